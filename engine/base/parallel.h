@@ -1,0 +1,88 @@
+// The only user of oneTBB in the engine. Every loop is isolated, so a thread that waits here never
+// starts another mesh; every result is bitwise the same for any number of threads, because each
+// index writes its own slot and folds run over fixed blocks in index order.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+#include <tbb/parallel_sort.h>
+#include <tbb/task_arena.h>
+
+namespace triglyph {
+
+// Work is cut into fixed blocks, so the shape of a fold depends on the input size alone.
+inline constexpr std::size_t kBlock = 4096;
+
+// Calls body(i) once for every i in [0, n), in parallel. The body must not throw across meshes:
+// an exception cancels this loop and is rethrown here.
+template <typename Body>
+void parallel_for(std::size_t n, const Body& body, std::size_t grain = 1) {
+  if (n <= grain) {
+    for (std::size_t i = 0; i < n; ++i) body(i);
+    return;
+  }
+  tbb::this_task_arena::isolate([&] {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, grain),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                        for (std::size_t i = range.begin(); i < range.end(); ++i) body(i);
+                      });
+  });
+}
+
+// Calls body(begin, end) for consecutive blocks that cover [0, n).
+template <typename Body>
+void parallel_blocks(std::size_t n, const Body& body, std::size_t block = kBlock) {
+  const std::size_t blocks = (n + block - 1) / block;
+  parallel_for(blocks,
+               [&](std::size_t b) { body(b * block, std::min(n, b * block + block)); });
+}
+
+// Folds map(0) .. map(n - 1) with join, in index order inside blocks and across them.
+template <typename T, typename Map, typename Join>
+[[nodiscard]] T parallel_reduce(std::size_t n, T identity, const Map& map, const Join& join) {
+  std::vector<T> partial((n + kBlock - 1) / kBlock, identity);
+  parallel_blocks(n, [&](std::size_t begin, std::size_t end) {
+    T folded = identity;
+    for (std::size_t i = begin; i < end; ++i) folded = join(folded, map(i));
+    partial[begin / kBlock] = folded;
+  });
+  T total = identity;
+  for (const T& part : partial) total = join(total, part);
+  return total;
+}
+
+// Collects what make(i, out) appends for i in [0, n), in index order.
+template <typename T, typename Make>
+[[nodiscard]] std::vector<T> parallel_collect(std::size_t n, const Make& make) {
+  std::vector<std::vector<T>> parts((n + kBlock - 1) / kBlock);
+  parallel_blocks(n, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) make(i, parts[begin / kBlock]);
+  });
+  std::size_t total = 0;
+  for (const auto& part : parts) total += part.size();
+  std::vector<T> all;
+  all.reserve(total);
+  for (auto& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+// Sorts by a total order: equal elements must be indistinguishable, or the result would depend on
+// the number of threads.
+template <typename Iterator, typename Less>
+void parallel_sort(Iterator begin, Iterator end, const Less& less) {
+  tbb::this_task_arena::isolate([&] { tbb::parallel_sort(begin, end, less); });
+}
+
+// Runs two independent pieces of work, on two threads where there are two.
+template <typename First, typename Second>
+void parallel_pair(const First& first, const Second& second) {
+  tbb::this_task_arena::isolate([&] { tbb::parallel_invoke(first, second); });
+}
+
+}  // namespace triglyph
