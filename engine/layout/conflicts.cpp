@@ -1,0 +1,29 @@
+#include "engine/layout/conflicts.h"
+
+namespace triglyph {
+namespace {
+
+// The units on each point, ascending.
+PointLists transpose(const PointLists& lists, std::size_t points) {
+  PointLists result;
+  result.offsets.assign(points + 1, 0);
+  result.points.resize(lists.points.size());
+  for (const std::uint32_t point : lists.points) ++result.offsets[point + 1];
+  for (std::size_t i = 0; i < points; ++i) result.offsets[i + 1] += result.offsets[i];
+  std::vector<std::uint32_t> cursor(result.offsets.begin(), result.offsets.end() - 1);
+  for (std::uint32_t unit = 0; unit < lists.size(); ++unit) {
+    for (const std::uint32_t point : lists[unit]) result.points[cursor[point]++] = unit;
+  }
+  return result;
+}
+
+}  // namespace
+
+Conflicts::Conflicts(const UnitSet& units, std::size_t points, ConflictRule rule)
+    : moved_(rule == ConflictRule::SharedPoint ? &units.read_or_moved() : &units.moved),
+      read_(&units.read_or_moved()),
+      movers_(transpose(*moved_, points)) {
+  if (moved_ != read_) readers_ = transpose(*read_, points);
+}
+
+}  // namespace triglyph

@@ -1,0 +1,157 @@
+#include "engine/message/words.h"
+
+#include <numeric>
+#include <utility>
+
+#include "engine/base/error.h"
+
+namespace triglyph {
+namespace {
+
+constexpr std::size_t kOffsets = 16;  // more than any scheme has invariants in a unit
+constexpr std::size_t kLengthBits = 8;
+constexpr std::size_t kTagBits = 32;
+
+std::uint32_t low_bits(int count) {
+  return static_cast<std::uint32_t>((std::uint64_t{1} << count) - 1);
+}
+
+std::vector<std::uint32_t> stream_words(const Key& key, KeyUse use, std::size_t count) {
+  const std::vector<std::uint8_t> bytes = key.stream(use, 4 * count);
+  std::vector<std::uint32_t> words(count);
+  for (std::size_t i = 0; i < 4 * count; ++i) {
+    words[i / 4] |= std::uint32_t{bytes[i]} << (8 * (i % 4));
+  }
+  return words;
+}
+
+// Fisher-Yates; the 64-bit product maps a 32-bit word to [0, i] with negligible bias.
+std::vector<std::uint32_t> keyed_permutation(const Key& key, std::uint32_t size) {
+  const std::vector<std::uint32_t> draws = stream_words(key, KeyUse::Permutation, size);
+  std::vector<std::uint32_t> order(size);
+  std::iota(order.begin(), order.end(), 0U);
+  for (std::uint32_t i = size - 1; i > 0; --i) {
+    const auto j = static_cast<std::uint32_t>((std::uint64_t{draws[i]} * (i + 1)) >> 32);
+    std::swap(order[i], order[j]);
+  }
+  return order;
+}
+
+// Payload bits, least significant bit of each byte first.
+std::vector<std::uint8_t> payload_bytes(std::span<const std::uint8_t> message, std::uint32_t tag) {
+  std::vector<std::uint8_t> bytes;
+  bytes.push_back(static_cast<std::uint8_t>(message.size() - 1));
+  bytes.insert(bytes.end(), message.begin(), message.end());
+  for (int i = 0; i < 4; ++i) bytes.push_back(static_cast<std::uint8_t>(tag >> (8 * i)));
+  return bytes;
+}
+
+bool bit_at(std::span<const std::uint8_t> bytes, std::size_t bit) {
+  return bit / 8 < bytes.size() && ((bytes[bit / 8] >> (bit % 8)) & 1) != 0;
+}
+
+}  // namespace
+
+void validate(const WordFormat& format) {
+  const auto out_of = [](int bits, int least, int most) { return bits < least || bits > most; };
+  if (out_of(format.marker_bits, 1, 16) || out_of(format.subscript_bits, 1, 16)) {
+    throw Error(ErrorCode::Usage, {}, "", "marker and subscript take 1 to 16 bits each");
+  }
+  if (out_of(format.part_bits, 2, 32)) {
+    throw Error(ErrorCode::Usage, {}, "", "a part takes 2 to 32 bits");
+  }
+}
+
+WordCode::WordCode(const Key& key, const WordFormat& format) : key_(key), format_(format) {
+  validate(format);
+  marker_ = stream_words(key, KeyUse::Marker, 1)[0] & low_bits(format.marker_bits);
+  for (const std::uint32_t draw : stream_words(key, KeyUse::Offsets, kOffsets)) {
+    offsets_.push_back(draw * 0x1.0p-32);
+  }
+  permutation_ = keyed_permutation(key, capacity());
+  inverse_.resize(capacity());
+  for (std::uint32_t part = 0; part < capacity(); ++part) inverse_[permutation_[part]] = part;
+  keystream_ = stream_words(key, KeyUse::Keystream, capacity());
+}
+
+std::uint32_t WordCode::parts_for(std::size_t message_bytes) const {
+  const std::size_t bits = kLengthBits + 8 * message_bytes + kTagBits;
+  const auto part_bits = static_cast<std::size_t>(format_.part_bits);
+  return static_cast<std::uint32_t>((bits + part_bits - 1) / part_bits);
+}
+
+std::uint32_t WordCode::whiten(std::uint32_t part, std::uint32_t index) const {
+  return (part ^ keystream_[index]) & low_bits(format_.part_bits);
+}
+
+std::vector<Word> WordCode::words_of(std::span<const std::uint8_t> message) const {
+  if (message.size() < kMinMessageBytes || message.size() > kMaxMessageBytes) {
+    throw Error(ErrorCode::Usage, {}, "",
+                "a message has 1 to 256 bytes, not " + std::to_string(message.size()));
+  }
+  const std::uint32_t parts = parts_for(message.size());
+  if (parts > capacity()) {
+    throw Error(ErrorCode::Usage, {}, "",
+                "the message needs " + std::to_string(parts) + " parts, but " +
+                    std::to_string(format_.subscript_bits) + " subscript bits number only " +
+                    std::to_string(capacity()));
+  }
+  const std::vector<std::uint8_t> payload = payload_bytes(message, key_.tag(message));
+  const auto part_bits = static_cast<std::size_t>(format_.part_bits);
+  std::vector<Word> words(parts);
+  for (std::uint32_t index = 0; index < parts; ++index) {
+    std::uint32_t part = 0;
+    for (std::size_t bit = 0; bit < part_bits; ++bit) {
+      if (bit_at(payload, index * part_bits + bit)) part |= 1U << bit;
+    }
+    words[index] = {permutation_[index], whiten(part, index)};
+  }
+  return words;
+}
+
+std::vector<Word> WordCode::fill_words(std::uint32_t parts) const {
+  if (parts > capacity()) {
+    throw Error(ErrorCode::Usage, {}, "",
+                std::to_string(parts) + " parts are more than the " + std::to_string(capacity()) +
+                    " that the subscript bits number");
+  }
+  const std::vector<std::uint32_t> payload = stream_words(key_, KeyUse::Fill, parts);
+  std::vector<Word> words(parts);
+  for (std::uint32_t index = 0; index < parts; ++index) {
+    words[index] = {permutation_[index], payload[index] & low_bits(format_.part_bits)};
+  }
+  return words;
+}
+
+std::optional<Message> WordCode::message_of(
+    std::span<const std::optional<std::uint32_t>> parts) const {
+  const auto part_bits = static_cast<std::size_t>(format_.part_bits);
+  const auto read_byte = [&](std::size_t byte) -> std::optional<std::uint8_t> {
+    unsigned value = 0;
+    for (std::size_t i = 0; i < 8; ++i) {
+      const std::size_t bit = 8 * byte + i;
+      const auto index = static_cast<std::uint32_t>(bit / part_bits);
+      if (index >= parts.size() || !parts[index]) return std::nullopt;
+      value |= ((whiten(*parts[index], index) >> (bit % part_bits)) & 1U) << i;
+    }
+    return static_cast<std::uint8_t>(value);
+  };
+  const auto length = read_byte(0);
+  if (!length) return std::nullopt;
+  Message message;
+  for (std::size_t i = 0; i < *length + std::size_t{1}; ++i) {
+    const auto byte = read_byte(1 + i);
+    if (!byte) return std::nullopt;
+    message.push_back(*byte);
+  }
+  std::uint32_t tag = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto byte = read_byte(1 + message.size() + i);
+    if (!byte) return std::nullopt;
+    tag |= std::uint32_t{*byte} << (8 * i);
+  }
+  if (tag != key_.tag(message)) return std::nullopt;
+  return message;
+}
+
+}  // namespace triglyph

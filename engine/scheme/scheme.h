@@ -1,0 +1,97 @@
+// What the engine asks of an embedding scheme: four calls on whole batches, so that the interface
+// costs nothing and the inner loops belong to the scheme.
+// Framework of Wang & Hu, CAGD 27 (2010), section 2.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/assignment/cost_matrix.h"
+#include "engine/mesh/halfedges.h"
+#include "engine/mesh/mesh.h"
+#include "engine/message/votes.h"
+#include "engine/message/words.h"
+
+namespace triglyph {
+
+// A mesh with its connectivity; views that outlive the call.
+struct Surface {
+  const Mesh& mesh;
+  const Halfedges& halfedges;
+};
+
+// Lists of points, one list a unit (compressed rows).
+struct PointLists {
+  std::vector<std::uint32_t> offsets{0};
+  std::vector<std::uint32_t> points;
+
+  [[nodiscard]] std::size_t size() const { return offsets.size() - 1; }
+  [[nodiscard]] std::span<const std::uint32_t> operator[](std::size_t i) const {
+    return {points.data() + offsets[i], points.data() + offsets[i + 1]};
+  }
+};
+
+// Candidates for invariant units, sorted by anchor. What a unit reads contains what it moves.
+struct UnitSet {
+  std::vector<std::uint32_t> anchors;  // scheme's own: triangle (TSQ), edge (AIE), point (IIE)
+  PointLists moved;                    // points whose position the unit may change
+  PointLists read;                     // points its invariants depend on; empty: the same as moved
+
+  [[nodiscard]] std::size_t size() const { return anchors.size(); }
+  [[nodiscard]] const PointLists& read_or_moved() const {
+    return read.size() == moved.size() ? read : moved;
+  }
+};
+
+// Which local change of the shape the assignment minimises, in model units.
+enum class CostFunction {
+  Displacement,  // the farthest move of a unit's points
+  Rms,           // root mean square of the moves of a unit's points
+};
+
+struct SchemeOptions {
+  double step = 0.03;  // width of a quantiser cell, dimensionless
+  CostFunction cost = CostFunction::Displacement;
+};
+
+// One unit and the word it is to carry.
+struct Placement {
+  std::uint32_t unit = 0;
+  std::uint32_t word = 0;
+};
+
+struct Embedding {
+  std::vector<Vec3> positions;
+  std::vector<std::uint32_t> failed;  // indices of the placements that could not be made, ascending
+};
+
+class Scheme {
+ public:
+  virtual ~Scheme() = default;
+
+  // All candidates the marker can be embedded in.
+  [[nodiscard]] virtual UnitSet find_units(const Surface& surface) const = 0;
+
+  // Cost of every chosen unit (row) carrying every word (column); infinity where it cannot.
+  [[nodiscard]] virtual CostMatrix costs(const Surface& surface, const UnitSet& units,
+                                         std::span<const std::uint32_t> chosen,
+                                         std::span<const Word> words) const = 0;
+
+  // New positions with every placement made. Precondition: the units do not interfere.
+  [[nodiscard]] virtual Embedding embed(const Surface& surface, const UnitSet& units,
+                                        std::span<const Placement> placements,
+                                        std::span<const Word> words) const = 0;
+
+  // Everything in the mesh that shows the marker, by ascending anchor. Blind: knows nothing of the
+  // original.
+  [[nodiscard]] virtual std::vector<Reading> read(const Surface& surface) const = 0;
+};
+
+// "tsq": similarity invariant. Throws Error Usage for an unknown name or options out of range.
+[[nodiscard]] std::unique_ptr<Scheme> make_scheme(const std::string& name, const WordCode& code,
+                                                  const SchemeOptions& options);
+
+}  // namespace triglyph
