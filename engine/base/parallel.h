@@ -85,4 +85,10 @@ void parallel_pair(const First& first, const Second& second) {
   tbb::this_task_arena::isolate([&] { tbb::parallel_invoke(first, second); });
 }
 
+// Runs work that is parallel inside (a library's), without picking up other meshes while it waits.
+template <typename Work>
+void run_isolated(const Work& work) {
+  tbb::this_task_arena::isolate(work);
+}
+
 }  // namespace triglyph

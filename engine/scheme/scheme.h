@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/assignment/cost_matrix.h"
@@ -51,6 +52,10 @@ enum class CostFunction {
   Displacement,  // the farthest move of a unit's points
   Rms,           // root mean square of the moves of a unit's points
 };
+
+// "displacement", "rms"; the inverse throws Error Usage.
+[[nodiscard]] std::string_view name_of(CostFunction cost);
+[[nodiscard]] CostFunction cost_function(const std::string& name);
 
 struct SchemeOptions {
   double step = 0.03;  // width of a quantiser cell, dimensionless

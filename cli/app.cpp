@@ -1,0 +1,55 @@
+#include "cli/app.h"
+
+#include <exception>
+#include <iostream>
+
+#include "cli/verbs.h"
+#include "engine/base/error.h"
+
+namespace triglyph {
+namespace {
+
+int report(const std::exception& error, int code) {
+  std::cerr << "triglyph: " << error.what() << "\n";
+  return code;
+}
+
+// Errors of usage, keys and manifests are the user's to mend; the rest ends the run.
+int exit_code_of(ErrorCode code) {
+  switch (code) {
+    case ErrorCode::Usage:
+    case ErrorCode::Unreadable:
+    case ErrorCode::Malformed:
+    case ErrorCode::Unsupported: return kUsageError;
+    case ErrorCode::Unwritable: return kFatal;
+  }
+  return kFatal;
+}
+
+}  // namespace
+
+int run_app(int argc, char** argv) try {
+  CLI::App app("Hides a blind, invisible watermark in meshes and reads it back.", "triglyph");
+  app.set_version_flag("--version", "triglyph " TRIGLYPH_VERSION);
+  app.set_config("--config", "", "Read options from a TOML file");
+  app.require_subcommand(1);
+  Action action;
+  add_mark_verb(app, action);
+  add_extract_verb(app, action);
+  add_verify_verb(app, action);
+  add_measure_verb(app, action);
+  add_sample_verb(app, action);
+  add_keygen_verb(app, action);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kDone : kUsageError;
+  }
+  return action();
+} catch (const Error& error) {
+  return report(error, exit_code_of(error.code()));
+} catch (const std::exception& error) {
+  return report(error, kFatal);
+}
+
+}  // namespace triglyph

@@ -1,0 +1,48 @@
+// Arguments that several verbs share, and what they become once they are known to make sense.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "manifests/job.h"
+
+namespace triglyph {
+
+// --key-file. Without it the public trial key is used and a warning printed.
+class KeyArgument {
+ public:
+  void add_to(CLI::App& verb);
+  [[nodiscard]] Key load() const;
+
+ private:
+  std::filesystem::path file_;
+};
+
+// Scheme and word format: what extraction must know beside the key.
+class SchemeArguments {
+ public:
+  void add_to(CLI::App& verb);
+  void apply_to(JobSettings& settings) const;
+
+ private:
+  std::string scheme_ = "tsq";
+  WordFormat format_;
+  double step_ = 0;
+};
+
+// --threads and --memory.
+class MachineArguments {
+ public:
+  void add_threads_to(CLI::App& verb);
+  void add_memory_to(CLI::App& verb);
+  [[nodiscard]] int threads() const { return threads_; }
+  [[nodiscard]] std::uint64_t memory_bytes() const { return memory_; }
+
+ private:
+  int threads_ = 0;
+  std::uint64_t memory_ = std::uint64_t{4} << 30;
+};
+
+}  // namespace triglyph

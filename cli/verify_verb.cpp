@@ -1,0 +1,83 @@
+#include <fstream>
+#include <iostream>
+#include <memory>
+
+#include "cli/app.h"
+#include "cli/options.h"
+#include "cli/verbs.h"
+#include "engine/base/error.h"
+#include "manifests/pipeline.h"
+#include "manifests/run.h"
+
+namespace triglyph {
+namespace {
+
+struct VerifyArguments {
+  std::filesystem::path records;
+  bool json = false;
+  KeyArgument key;
+  MachineArguments machine;
+};
+
+RecordedMark parse_line(const VerifyArguments& arguments, const std::string& line,
+                        std::size_t number) try {
+  return parse_record(line);
+} catch (const Error& error) {
+  throw Error(ErrorCode::Malformed, arguments.records, at_line(number), error.message());
+}
+
+void print(const VerifyArguments& arguments, const RecordedMark& recorded,
+           const Verification& found) {
+  if (arguments.json) {
+    nlohmann::ordered_json json = {{"out", recorded.out.string()},
+                                   {"verdict", name_of(found.verdict)},
+                                   {"units_recorded", recorded.units_embedded},
+                                   {"units_found", found.units_found}};
+    if (!found.detail.empty()) json["detail"] = found.detail;
+    std::cout << json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
+    return;
+  }
+  std::cout << recorded.out.string() << ": " << name_of(found.verdict) << ", "
+            << found.units_found << " of " << recorded.units_embedded << " units";
+  if (!found.detail.empty()) std::cout << " (" << found.detail << ")";
+  std::cout << "\n";
+}
+
+int run_verify(const VerifyArguments& arguments) {
+  const Key key = arguments.key.load();
+  std::ifstream stream(arguments.records);
+  if (std::filesystem::is_directory(arguments.records) || !stream) {
+    throw Error(ErrorCode::Unreadable, arguments.records, "", "the records cannot be read");
+  }
+  bool all_good = true;
+  with_threads(arguments.machine.threads(), [&] {
+    std::string line;
+    for (std::size_t number = 1; std::getline(stream, line); ++number) {
+      const RecordedMark recorded = parse_line(arguments, line, number);
+      const Verification found = verify_file(recorded, key);
+      all_good = all_good && (found.verdict == FileVerdict::Intact ||
+                              found.verdict == FileVerdict::NotMarked);
+      print(arguments, recorded, found);
+    }
+  });
+  return all_good ? kDone : kSomeFailed;
+}
+
+}  // namespace
+
+void add_verify_verb(CLI::App& app, Action& action) {
+  CLI::App* verb = app.add_subcommand(
+      "verify", "Is each marked file of a run there, intact, carrying its message?");
+  auto arguments = std::make_shared<VerifyArguments>();
+  verb->add_option("records", arguments->records, "Records written by mark --records")
+      ->required()
+      ->type_name("RECORDS");
+  verb->add_flag("--json", arguments->json, "One JSON object a record");
+  arguments->key.add_to(*verb);
+  arguments->machine.add_threads_to(*verb);
+  verb->callback([&action, arguments] {
+    action = [arguments] { return run_verify(*arguments); };
+  });
+}
+
+}  // namespace triglyph

@@ -1,0 +1,28 @@
+#include "engine/extract.h"
+
+#include <algorithm>
+
+namespace triglyph {
+
+Extraction extract(const Surface& surface, const Scheme& scheme, const WordCode& code) {
+  Extraction result;
+  result.readings = scheme.read(surface);
+  Votes votes(code);
+  for (const Reading& reading : result.readings) votes.add(reading);
+  result.message = code.message_of(votes.parts());
+  if (!result.message) return result;
+
+  const std::vector<Word> words = code.words_of(*result.message);
+  result.parts = static_cast<std::uint32_t>(words.size());
+  for (const Reading& reading : result.readings) {
+    const std::uint32_t index = code.part_index(reading.word.subscript);
+    if (index < words.size() && words[index] == reading.word) ++result.agreeing;
+  }
+  result.agreement = 1;
+  for (std::uint32_t index = 0; index < result.parts; ++index) {
+    result.agreement = std::min(result.agreement, votes.agreement(index));
+  }
+  return result;
+}
+
+}  // namespace triglyph

@@ -1,0 +1,87 @@
+// Hiding a message in a mesh: the paper's figure 2 on one page. Layout decides which units there
+// are, assignment which watermark word each carries; either step can be switched off.
+// Wang & Hu, CAGD 27 (2010), section 2.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/assignment/assignment.h"
+#include "engine/layout/layout.h"
+#include "engine/message/words.h"
+#include "engine/scheme/scheme.h"
+
+namespace triglyph {
+
+enum class AssignMethod {
+  Sequential,  // un-optimised: the i-th unit carries the i-th word
+  Bottleneck,  // least maximum of the costs, and of those the least sum (the paper's eq. 3)
+  Sum,         // least sum of the costs (eq. 2)
+};
+
+// "sequential", "bottleneck", "sum"; the inverse throws Error Usage.
+[[nodiscard]] std::string_view name_of(AssignMethod method);
+[[nodiscard]] AssignMethod assign_method(const std::string& name);
+
+struct MarkOptions {
+  std::string scheme = "tsq";
+  WordFormat format;
+  SchemeOptions scheme_options;
+  ConflictRule conflict_rule = ConflictRule::ReadWrite;
+  LayoutMethod layout = LayoutMethod::MinDegree;
+  AssignMethod assign = AssignMethod::Bottleneck;
+  std::uint32_t redundancy = 32;  // wanted units a part; 0: as many as there are
+};
+
+// Options for the paper's experiment, in which every unit carries a part of its own: as many
+// subscripts as a unit can tell apart, in cells that are small because they must survive rounding
+// only.
+inline constexpr double kFillStep = 0.004;
+inline constexpr int kMaxFillSubscriptBits = 13;
+
+enum class MarkStatus {
+  Marked,
+  TooSmall,   // fewer valid units than parts
+  TooCoarse,  // the file's numbers are too coarse to hold the cells
+};
+
+// A unit that carries a word after rounding and settling.
+struct Carrier {
+  std::uint32_t anchor = 0;
+  std::uint32_t word = 0;  // index into Marking::words
+
+  bool operator==(const Carrier&) const = default;
+};
+
+struct Marking {
+  MarkStatus status = MarkStatus::Marked;
+  std::vector<Vec3> positions;  // of all points, as the file will hold them
+  std::vector<Word> words;      // one a part
+  WordFormat format;            // of the words; --fill chooses the subscript bits
+  std::vector<Carrier> carriers;
+  std::uint32_t candidates = 0;
+  std::uint32_t units_valid = 0;     // after layout
+  std::uint32_t units_bound = 0;     // no layout has more
+  std::uint32_t units_assigned = 0;  // given a word they can carry
+  std::uint32_t units_dropped = 0;   // taken back: rounding or a flipped face spoiled them
+  double cost_max = 0;               // of the assignment, model units
+  double cost_sum = 0;
+};
+
+// The nearest point that the output can hold.
+using Rounding = std::function<Vec3(const Vec3&)>;
+
+// Marks a mesh with a message. Throws Error Usage for a message or options that cannot be. An empty
+// message asks for the paper's experiment: a keyed random message as long as the capacity, one part
+// a unit up to 2^13 units, repeated beyond. `number_step` is the distance between the numbers that
+// the output can hold, model units, and explains a failure.
+// O(triangles + units * parts) and the assignment.
+[[nodiscard]] Marking mark(const Surface& surface, std::span<const std::uint8_t> message,
+                           const Key& key, const MarkOptions& options, const Rounding& round,
+                           double number_step);
+
+}  // namespace triglyph

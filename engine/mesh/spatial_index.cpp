@@ -1,0 +1,168 @@
+#include "engine/mesh/spatial_index.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <embree3/rtcore.h>
+
+#include "engine/base/error.h"
+#include "engine/base/parallel.h"
+
+namespace triglyph {
+namespace {
+
+// Coordinates handed to Embree lie in [-1, 1]; rounding them to float moves a corner by less than
+// 2^-24 an axis, Embree's own arithmetic adds a few times that.
+constexpr double kFloatPad = 4e-7;
+
+// One device for the process. note: never rtcNewDevice("threads=..."), which would throttle TBB for
+// every other mesh.
+RTCDevice shared_device() {
+  static const struct Device {
+    RTCDevice handle = rtcNewDevice(nullptr);
+    ~Device() { rtcReleaseDevice(handle); }
+  } device;
+  check(device.handle != nullptr, "Embree offers no device");
+  return device.handle;
+}
+
+float float_above(double value) {
+  return std::nextafter(static_cast<float>(value), std::numeric_limits<float>::infinity());
+}
+
+}  // namespace
+
+struct SpatialIndex::Scene {
+  std::span<const Vec3> positions;
+  std::span<const Triangle> triangles;
+  Vec3 centre{0, 0, 0};
+  double scale = 1;  // Embree units a model unit
+  RTCScene handle = nullptr;
+
+  ~Scene() {
+    if (handle != nullptr) rtcReleaseScene(handle);
+  }
+
+  struct Query {
+    const Scene* scene;
+    Vec3 point;
+    ClosestPoint best;
+    double best_squared;
+  };
+
+  static bool visit(RTCPointQueryFunctionArguments* arguments) {
+    auto& query = *static_cast<Query*>(arguments->userPtr);
+    const Scene& scene = *query.scene;
+    const Triangle& triangle = scene.triangles[arguments->primID];
+    const Vec3 point =
+        closest_on_triangle(query.point, scene.positions[triangle[0]],
+                            scene.positions[triangle[1]], scene.positions[triangle[2]]);
+    const double squared = (point - query.point).sqrnorm();
+    const bool nearer = squared < query.best_squared ||
+                        (squared == query.best_squared && arguments->primID < query.best.triangle);
+    if (!nearer) return false;
+    query.best_squared = squared;
+    query.best.triangle = arguments->primID;
+    query.best.point = point;
+    const float radius = float_above(std::sqrt(squared) * scene.scale + kFloatPad);
+    if (!(radius < arguments->query->radius)) return false;
+    arguments->query->radius = radius;
+    return true;
+  }
+
+  void attach_triangles() {
+    RTCGeometry geometry = rtcNewGeometry(shared_device(), RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* points = static_cast<float*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                3 * sizeof(float), positions.size()));
+    auto* corners = static_cast<std::uint32_t*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                3 * sizeof(std::uint32_t), triangles.size()));
+    check(points != nullptr && corners != nullptr, "Embree has no memory for the triangles");
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      const Vec3 point = (positions[i] - centre) * scale;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        points[3 * i + axis] = static_cast<float>(point[axis]);
+      }
+    }
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      std::copy(triangles[i].begin(), triangles[i].end(), corners + 3 * i);
+    }
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(handle, geometry);
+    rtcReleaseGeometry(geometry);
+  }
+};
+
+SpatialIndex::SpatialIndex(std::span<const Vec3> positions, std::span<const Triangle> triangles)
+    : scene_(std::make_unique<Scene>()) {
+  scene_->positions = positions;
+  scene_->triangles = triangles;
+  if (triangles.empty()) return;
+  Vec3 low = positions[triangles[0][0]];
+  Vec3 high = low;
+  for (const Triangle& triangle : triangles) {
+    for (const std::uint32_t point : triangle) {
+      low.minimize(positions[point]);
+      high.maximize(positions[point]);
+    }
+  }
+  scene_->centre = (low + high) * 0.5;
+  const double half = 0.5 * (high - low).max();
+  scene_->scale = half > 0 ? 1 / half : 1;
+  run_isolated([&] {
+    scene_->handle = rtcNewScene(shared_device());
+    scene_->attach_triangles();
+    rtcCommitScene(scene_->handle);
+  });
+}
+
+SpatialIndex::~SpatialIndex() = default;
+SpatialIndex::SpatialIndex(SpatialIndex&&) noexcept = default;
+
+ClosestPoint SpatialIndex::closest(const Vec3& query, double reach) const {
+  Scene::Query state{scene_.get(), query, {}, std::numeric_limits<double>::infinity()};
+  state.best.distance = std::numeric_limits<double>::infinity();
+  if (scene_->handle == nullptr) return state.best;
+  const Vec3 local = (query - scene_->centre) * scene_->scale;
+  RTCPointQuery point_query{};
+  point_query.x = static_cast<float>(local[0]);
+  point_query.y = static_cast<float>(local[1]);
+  point_query.z = static_cast<float>(local[2]);
+  // the query's own rounding grows with its distance from the box
+  const double pad = kFloatPad * std::max(1.0, local.max_abs());
+  point_query.radius = std::isfinite(reach) ? float_above(reach * scene_->scale * (1 + 1e-6) + pad)
+                                            : std::numeric_limits<float>::infinity();
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  rtcPointQuery(scene_->handle, &point_query, &context, &Scene::visit, &state);
+  state.best.distance = std::sqrt(state.best_squared);
+  if (state.best.distance <= reach) return state.best;
+  return {std::numeric_limits<double>::infinity(), kNoTriangle, Vec3(0, 0, 0)};
+}
+
+Vec3 closest_on_triangle(const Vec3& query, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 ab = b - a, ac = c - a, ap = query - a;
+  const double d1 = dot(ab, ap), d2 = dot(ac, ap);
+  if (d1 <= 0 && d2 <= 0) return a;
+  const Vec3 bp = query - b;
+  const double d3 = dot(ab, bp), d4 = dot(ac, bp);
+  if (d3 >= 0 && d4 <= d3) return b;
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0 && d1 > d3) return a + ab * (d1 / (d1 - d3));
+  const Vec3 cp = query - c;
+  const double d5 = dot(ab, cp), d6 = dot(ac, cp);
+  if (d6 >= 0 && d5 <= d6) return c;
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0 && d2 > d6) return a + ac * (d2 / (d2 - d6));
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 >= d3 && d5 >= d6 && d4 - d3 + d5 - d6 > 0) {
+    return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
+  }
+  const double total = va + vb + vc;
+  if (!(total > 0)) return a;  // a degenerate triangle that escaped the edge cases
+  return a + ab * (vb / total) + ac * (vc / total);
+}
+
+}  // namespace triglyph

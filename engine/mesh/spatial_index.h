@@ -1,0 +1,43 @@
+// Closest points on a set of triangles. Embree finds the candidates in single precision, relative to
+// the box's centre and with padded radii; distances are computed and compared in double, and of equal
+// ones the lowest triangle wins, so an answer depends neither on threads nor on the instruction set.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "engine/mesh/mesh.h"
+
+namespace triglyph {
+
+inline constexpr std::uint32_t kNoTriangle = 0xffffffff;
+
+struct ClosestPoint {
+  double distance = 0;                   // model units
+  std::uint32_t triangle = kNoTriangle;  // index in the span given; kNoTriangle: none in reach
+  Vec3 point{0, 0, 0};
+};
+
+class SpatialIndex {
+ public:
+  // Keeps views of both; they must outlive the index. O(t log t), parallel.
+  SpatialIndex(std::span<const Vec3> positions, std::span<const Triangle> triangles);
+  ~SpatialIndex();
+  SpatialIndex(SpatialIndex&&) noexcept;
+
+  // The nearest point on any triangle within `reach` of `query` (inclusive; infinity: anywhere).
+  // Safe to call from many threads. O(log t) typically.
+  [[nodiscard]] ClosestPoint closest(const Vec3& query, double reach) const;
+
+ private:
+  struct Scene;
+  std::unique_ptr<Scene> scene_;
+};
+
+// Nearest point of one triangle, degenerate ones included.
+// Ericson, Real-Time Collision Detection (2005), section 5.1.5.
+[[nodiscard]] Vec3 closest_on_triangle(const Vec3& query, const Vec3& a, const Vec3& b,
+                                       const Vec3& c);
+
+}  // namespace triglyph

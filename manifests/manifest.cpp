@@ -1,0 +1,224 @@
+#include "manifests/manifest.h"
+
+#include <algorithm>
+#include <functional>
+#include <unordered_map>
+
+#include <fnmatch.h>
+#include <nlohmann/json.hpp>
+
+#include "engine/base/error.h"
+
+namespace triglyph {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+bool has_wildcard(const std::string& text) {
+  return text.find_first_of("*?[") != std::string::npos;
+}
+
+// Component by component; ** stands for any number of them, none included.
+bool matches(fs::path::iterator pattern, fs::path::iterator pattern_end, fs::path::iterator name,
+             fs::path::iterator name_end) {
+  if (pattern == pattern_end) return name == name_end;
+  const auto rest = std::next(pattern);
+  if (*pattern == "**") {
+    return matches(rest, pattern_end, name, name_end) ||
+           (name != name_end && matches(pattern, pattern_end, std::next(name), name_end));
+  }
+  return name != name_end && fnmatch(pattern->c_str(), name->c_str(), FNM_PERIOD) == 0 &&
+         matches(rest, pattern_end, std::next(name), name_end);
+}
+
+// Applies one key of a manifest line to settings; false if it is none of theirs.
+bool apply(const std::string& key, const Json& value, JobSettings& settings) {
+  MarkOptions& options = settings.options;
+  if (key == "message") {
+    const auto text = value.get<std::string>();
+    settings.message.assign(text.begin(), text.end());
+    settings.fill = false;
+  } else if (key == "message_hex") {
+    settings.message = from_hex(value.get<std::string>());
+    settings.fill = false;
+  } else if (key == "fill") {
+    settings.fill = value.get<bool>();
+  } else if (key == "scheme") {
+    options.scheme = value.get<std::string>();
+  } else if (key == "layout") {
+    options.layout = layout_method(value.get<std::string>());
+  } else if (key == "assign") {
+    options.assign = assign_method(value.get<std::string>());
+  } else if (key == "cost") {
+    options.scheme_options.cost = cost_function(value.get<std::string>());
+  } else if (key == "redundancy") {
+    options.redundancy = value.get<std::uint32_t>();
+  } else if (key == "marker_bits") {
+    options.format.marker_bits = value.get<int>();
+  } else if (key == "subscript_bits") {
+    options.format.subscript_bits = value.get<int>();
+  } else if (key == "part_bits") {
+    options.format.part_bits = value.get<int>();
+  } else if (key == "step") {
+    settings.step = value.get<double>();
+  } else {
+    return false;
+  }
+  return true;
+}
+
+// Where the output of one mesh goes if its line does not name a file: below `directory`, as the mesh
+// lies below `root`.
+fs::path place_below(const fs::path& directory, const fs::path& mesh, const fs::path& root) {
+  const fs::path relative = mesh.lexically_relative(root);
+  const bool inside = !relative.empty() && *relative.begin() != "..";
+  return directory / (inside ? relative : mesh.filename());
+}
+
+// One name for a file however it is spelled; the file itself need not exist.
+std::string canonical_name(const fs::path& path) {
+  std::error_code error;
+  const fs::path absolute = fs::absolute(path, error);
+  const fs::path directory = fs::weakly_canonical(absolute.parent_path(), error);
+  return (directory / absolute.filename()).lexically_normal().string();
+}
+
+}  // namespace
+
+fs::path glob_root(const fs::path& pattern) {
+  fs::path root;
+  for (const fs::path& part : pattern.parent_path()) {
+    if (has_wildcard(part.string())) break;
+    root /= part;
+  }
+  return root;
+}
+
+std::vector<fs::path> expand_glob(const fs::path& pattern) {
+  if (!has_wildcard(pattern.string())) return {pattern};
+  const fs::path root = glob_root(pattern);
+  const fs::path start = root.empty() ? "." : root;
+  const fs::path below = root.empty() ? pattern : pattern.lexically_relative(root);
+  const bool deep = below.has_parent_path();
+  std::vector<fs::path> found;
+  std::error_code error;
+  const auto options = fs::directory_options::skip_permission_denied;
+  for (fs::recursive_directory_iterator it(start, options, error), end; !error && it != end;
+       it.increment(error)) {
+    if (!deep) it.disable_recursion_pending();
+    const fs::path name = it->path().lexically_relative(start);
+    std::error_code ignored;
+    if (it->is_regular_file(ignored) &&
+        matches(below.begin(), below.end(), name.begin(), name.end())) {
+      found.push_back(root / name);
+    }
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+ManifestReader::ManifestReader(const fs::path& manifest, const JobSettings& settings,
+                               const fs::path& out_directory)
+    : manifest_(manifest), out_directory_(out_directory), defaults_(settings), stream_(manifest) {
+  if (fs::is_directory(manifest) || !stream_) {
+    throw Error(ErrorCode::Unreadable, manifest, "", "the manifest cannot be read");
+  }
+}
+
+void ManifestReader::fail(const std::string& message) const {
+  throw Error(ErrorCode::Malformed, manifest_, at_line(line_), message);
+}
+
+std::optional<Job> ManifestReader::next() {
+  std::string line;
+  while (ready_.empty() && std::getline(stream_, line)) {
+    ++line_;
+    if (line.find_first_not_of(" \t\r") != line.npos) read_line(line);
+  }
+  if (ready_.empty()) return std::nullopt;
+  Job job = std::move(ready_.front());
+  ready_.pop_front();
+  job.index = jobs_++;
+  return job;
+}
+
+void ManifestReader::read_line(const std::string& line) try {
+  const Json object = Json::parse(line);
+  if (!object.is_object()) fail("a line holds one JSON object");
+  const bool heading = object.contains("triglyph");
+  if (heading && (object["triglyph"] != 1 || line_ != 1)) {
+    fail("\"triglyph\" stands in the first line and is 1");
+  }
+  JobSettings settings = defaults_;
+  std::string out = default_out_;
+  for (const auto& [key, value] : (heading ? object.value("defaults", Json::object()) : object)
+                                      .items()) {
+    if (key == "out") {
+      out = value.get<std::string>();
+    } else if ((key != "mesh" || heading) && !apply(key, value, settings)) {
+      fail("unknown key \"" + key + "\"");
+    }
+  }
+  if (heading) {
+    defaults_ = settings;
+    default_out_ = out;
+    return;
+  }
+  if (!object.contains("mesh")) fail("\"mesh\" is missing");
+  const fs::path base = manifest_.parent_path();
+  const fs::path pattern = base / object["mesh"].get<std::string>();
+  const std::vector<fs::path> meshes = expand_glob(pattern);
+  if (meshes.empty()) fail("\"mesh\" matches no file: " + pattern.string());
+  const bool names_file = !out.empty() && out.back() != '/';
+  if (names_file && has_wildcard(pattern.string())) fail("\"out\" of a glob must end in \"/\"");
+  if (out.empty() && out_directory_.empty()) fail("\"out\" is missing and no --out was given");
+  const fs::path root = has_wildcard(pattern.string()) ? glob_root(pattern) : base;
+  for (const fs::path& mesh : meshes) {
+    const fs::path target = names_file ? base / out
+                                       : place_below(out.empty() ? out_directory_ : base / out,
+                                                     mesh, root);
+    ready_.push_back({0, mesh, target, settings});
+  }
+} catch (const Json::exception& error) {
+  fail(error.what());
+} catch (const Error& error) {
+  if (error.code() == ErrorCode::Usage) fail(error.message());
+  throw;
+}
+
+MeshList::MeshList(std::vector<fs::path> meshes, const JobSettings& settings,
+                   const fs::path& out_directory)
+    : meshes_(std::move(meshes)), settings_(settings), out_directory_(out_directory) {}
+
+std::optional<Job> MeshList::next() {
+  if (next_ == meshes_.size()) return std::nullopt;
+  const fs::path& mesh = meshes_[next_];
+  return Job{next_++, mesh, out_directory_ / mesh.filename(), settings_};
+}
+
+std::size_t check_plan(JobSource& jobs) {
+  enum : char { kInput = 1, kOutput = 2 };
+  std::unordered_map<std::size_t, char> uses;  // by hash of a canonical name
+  const auto use = [&](const std::string& name, char as, char excluded, const fs::path& path,
+                       const char* clash) {
+    char& known = uses[std::hash<std::string>{}(name)];
+    if ((known & excluded) != 0) throw Error(ErrorCode::Usage, path, "", clash);
+    known |= as;
+  };
+  std::size_t count = 0;
+  while (const std::optional<Job> job = jobs.next()) {
+    ++count;
+    const char* lost = "an output of the run would overwrite this mesh";
+    use(canonical_name(job->mesh), kInput, kOutput, job->mesh, lost);
+    std::error_code error;
+    const fs::path target = fs::canonical(job->mesh, error);  // where a symbolic link leads
+    if (!error) use(target.string(), kInput, kOutput, job->mesh, lost);
+    const std::string out = canonical_name(job->out);
+    use(out, 0, kInput, job->out, "the output would overwrite a mesh of the run");
+    use(out, kOutput, kOutput, job->out, "two meshes of the run have this output");
+  }
+  return count;
+}
+
+}  // namespace triglyph

@@ -1,0 +1,254 @@
+#include "manifests/pipeline.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "engine/base/error.h"
+#include "engine/base/parallel.h"
+#include "engine/metric/hausdorff.h"
+
+namespace triglyph {
+namespace {
+
+Status status_of(ErrorCode code) {
+  switch (code) {
+    case ErrorCode::Unreadable: return Status::Unreadable;
+    case ErrorCode::Malformed: return Status::Malformed;
+    case ErrorCode::Unsupported: return Status::Unsupported;
+    case ErrorCode::Unwritable: return Status::Unwritable;
+    case ErrorCode::Usage: return Status::Usage;
+  }
+  return Status::Failed;
+}
+
+// Ends the task's way with a reason.
+void end(Task& task, Status status, const std::string& reason) {
+  task.record.status = status;
+  task.record.error = reason;
+}
+
+// Runs one stage of a task that still stands; the one place where exceptions stop.
+template <typename Stage>
+void run_stage(Task& task, double& seconds, const Stage& stage) noexcept {
+  const auto start = std::chrono::steady_clock::now();
+  try {
+    stage();
+  } catch (const Error& error) {
+    end(task, status_of(error.code()),
+        error.path().empty() ? task.record.job.mesh.string() + ": " + error.what() : error.what());
+  } catch (const std::bad_alloc&) {
+    end(task, Status::Failed, task.record.job.mesh.string() + ": not enough memory");
+  } catch (const std::exception& error) {
+    end(task, Status::Failed, task.record.job.mesh.string() + ": " + error.what());
+  }
+  seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// A written or found file with what it takes to read it.
+struct Readable {
+  MeshFile file;
+  Halfedges halfedges;
+
+  explicit Readable(const std::filesystem::path& path)
+      : file(MeshFile::open(path)), halfedges(build_halfedges(file.mesh())) {}
+  [[nodiscard]] Surface surface() const { return {file.mesh(), halfedges}; }
+};
+
+// Units of the task's marking whose whole word stands in the file that was read.
+std::uint32_t count_carriers(const Marking& marking, std::span<const Reading> readings) {
+  std::uint32_t count = 0;
+  auto reading = readings.begin();
+  for (const Carrier& carrier : marking.carriers) {
+    while (reading != readings.end() && reading->anchor < carrier.anchor) ++reading;
+    if (reading == readings.end()) break;
+    if (reading->anchor == carrier.anchor && reading->word == marking.words[carrier.word]) ++count;
+  }
+  return count;
+}
+
+// Units that carry one of the words, wherever they stand.
+std::uint32_t count_words(const WordCode& code, std::span<const Word> words,
+                          std::span<const Reading> readings) {
+  return static_cast<std::uint32_t>(
+      std::count_if(readings.begin(), readings.end(), [&](const Reading& reading) {
+        const std::uint32_t index = code.part_index(reading.word.subscript);
+        return index < words.size() && words[index] == reading.word;
+      }));
+}
+
+void describe(const Marking& marking, Record& record) {
+  record.format = marking.format;
+  record.parts = static_cast<std::uint32_t>(marking.words.size());
+  record.candidates = marking.candidates;
+  record.units_valid = marking.units_valid;
+  record.units_bound = marking.units_bound;
+  record.units_assigned = marking.units_assigned;
+  record.cost_max = marking.cost_max;
+  record.cost_sum = marking.cost_sum;
+}
+
+}  // namespace
+
+void load(Task& task) noexcept {
+  run_stage(task, task.record.times.load, [&] {
+    Record& record = task.record;
+    record.job.settings.options = record.job.settings.resolved();
+    record.format = record.job.settings.options.format;
+    record.status = Status::Marked;  // until a stage finds otherwise
+    task.file = MeshFile::open(record.job.mesh);
+    record.file_format = name_of(task.file->format());
+    record.vertices = task.file->vertex_count();
+    record.points = task.file->mesh().positions.size();
+    record.faces = task.file->face_count();
+    parallel_pair([&] { record.input_hash = content_hash(task.file->bytes()); },
+                  [&] { task.halfedges = build_halfedges(task.file->mesh()); });
+  });
+}
+
+void mark(Task& task, const Key& key) noexcept {
+  if (!task.stands()) return;
+  run_stage(task, task.record.times.mark, [&] {
+    Record& record = task.record;
+    const JobSettings& settings = record.job.settings;
+    record.key_fingerprint = key.fingerprint();
+    task.marking = mark({task.file->mesh(), *task.halfedges},
+                        settings.fill ? Message{} : settings.message, key, settings.options,
+                        [&](const Vec3& point) { return task.file->round(point); },
+                        task.file->number_step());
+    describe(task.marking, record);
+    const std::string name = record.job.mesh.string() + ": ";
+    if (task.marking.status == MarkStatus::TooSmall) {
+      end(task, Status::TooSmall,
+          name + std::to_string(record.units_valid) + " units are too few for " +
+              std::to_string(std::max(record.parts, 1U)) + " parts");
+    } else if (task.marking.status == MarkStatus::TooCoarse) {
+      end(task, Status::TooCoarse,
+          name + "numbers " + std::to_string(task.file->number_step()) +
+              " apart are too coarse for the mark");
+    }
+  });
+}
+
+void write(Task& task) noexcept {
+  if (!task.stands()) return;
+  run_stage(task, task.record.times.write, [&] {
+    const std::vector<char> bytes = task.file->patched(task.marking.positions);
+    task.output.emplace(task.record.job.out);
+    parallel_pair([&] { task.record.output_hash = content_hash(bytes); },
+                  [&] { task.output->write(bytes); });
+  });
+}
+
+void read_back(Task& task, const Key& key) noexcept {
+  if (!task.stands()) return;
+  run_stage(task, task.record.times.read_back, [&] {
+    Record& record = task.record;
+    const JobSettings& settings = record.job.settings;
+    const WordCode code(key, record.format);
+    const auto scheme =
+        make_scheme(settings.options.scheme, code, settings.options.scheme_options);
+    const Readable written(task.output->temporary_path());
+    const Extraction found = extract(written.surface(), *scheme, code);
+    record.units_embedded = count_carriers(task.marking, found.readings);
+    const bool verified =
+        settings.fill ? record.units_embedded > 0 &&
+                            record.units_embedded >= task.marking.carriers.size() * 99 / 100
+                      : found.message == settings.message;
+    if (verified) {
+      task.output->commit();
+    } else {
+      end(task, Status::NotVerified,
+          record.job.mesh.string() + ": the mark could not be read back (" +
+              std::to_string(record.units_embedded) + " of " +
+              std::to_string(record.units_assigned) + " units)");
+      record.output_hash.clear();
+    }
+  });
+  task.output.reset();
+}
+
+void measure(Task& task) noexcept {
+  if (task.stands()) {
+    run_stage(task, task.record.times.measure, [&] {
+      Record& record = task.record;
+      const Mesh& mesh = task.file->mesh();
+      const Displacement moved = displacement(mesh.positions, task.marking.positions);
+      record.displacement_max = moved.max;
+      record.displacement_rms = moved.rms;
+      record.hausdorff =
+          hausdorff_of_move(mesh.triangles, mesh.positions, task.marking.positions).symmetric();
+      record.hausdorff_rel_diag = record.hausdorff / box_diagonal(mesh.positions);
+    });
+  }
+  task.output.reset();
+  task.marking = {};
+  task.halfedges.reset();
+  task.file.reset();
+}
+
+FileExtraction extract_file(const std::filesystem::path& path, const Key& key,
+                            const MarkOptions& options) {
+  const Readable readable(path);
+  const WordCode code(key, options.format);
+  const auto scheme = make_scheme(options.scheme, code, options.scheme_options);
+  return {extract(readable.surface(), *scheme, code), readable.file.vertex_count(),
+          readable.file.face_count()};
+}
+
+std::string_view name_of(FileVerdict verdict) {
+  switch (verdict) {
+    case FileVerdict::Intact: return "intact";
+    case FileVerdict::Altered: return "altered, mark present";
+    case FileVerdict::Missing: return "missing";
+    case FileVerdict::Lost: return "mark lost";
+    case FileVerdict::Damaged: return "damaged";
+    case FileVerdict::NotMarked: return "not marked";
+  }
+  return "";
+}
+
+Verification verify_file(const RecordedMark& recorded, const Key& key) {
+  if (recorded.status != Status::Marked) {
+    return {FileVerdict::NotMarked, 0, "the record says \"" + std::string(name_of(recorded.status)) +
+                                           "\""};
+  }
+  if (!std::filesystem::exists(recorded.out)) {
+    return {FileVerdict::Missing, 0, recorded.out.string() + ": no such file"};
+  }
+  try {
+    const Readable readable(recorded.out);
+    const WordCode code(key, recorded.format);
+    const auto scheme = make_scheme(recorded.settings.options.scheme, code,
+                                    recorded.settings.options.scheme_options);
+    const Extraction found = extract(readable.surface(), *scheme, code);
+    const std::vector<Word> words = recorded.settings.fill
+                                        ? code.fill_words(recorded.parts)
+                                        : code.words_of(recorded.settings.message);
+    Verification result;
+    result.units_found = count_words(code, words, found.readings);
+    const bool carries = recorded.settings.fill
+                             ? 2 * result.units_found > recorded.units_embedded
+                             : found.message == recorded.settings.message;
+    if (!carries) {
+      const bool other_key = recorded.key_fingerprint != key.fingerprint();
+      return {FileVerdict::Lost, result.units_found,
+              other_key ? "marked under another key, " + recorded.key_fingerprint
+                        : "the message is not in the file"};
+    }
+    const bool same = content_hash(readable.file.bytes()) == recorded.output_hash;
+    result.verdict = same ? FileVerdict::Intact : FileVerdict::Altered;
+    if (!same) result.detail = "the bytes differ from those written";
+    return result;
+  } catch (const Error& error) {
+    return {FileVerdict::Damaged, 0, error.what()};
+  }
+}
+
+std::uint64_t estimate_memory(std::uint64_t file_bytes, std::string_view extension) {
+  // A triangle mesh has about 80 bytes of OBJ, OFF or ascii PLY text a point, 38 of binary PLY, 100
+  // of binary STL and 500 of ascii STL, and takes about 1.2 kB a point in memory.
+  const bool text_or_stl = extension != ".ply";
+  return (std::uint64_t{1} << 20) + file_bytes * (text_or_stl ? 16 : 32);
+}
+
+}  // namespace triglyph

@@ -1,0 +1,128 @@
+#include "manifests/record.h"
+
+#include <array>
+
+#include "engine/base/error.h"
+
+namespace triglyph {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct StatusName {
+  Status status;
+  std::string_view name;
+};
+constexpr std::array<StatusName, 11> kStatusNames{{{Status::Marked, "marked"},
+                                                   {Status::TooSmall, "too small"},
+                                                   {Status::TooCoarse, "positions too coarse"},
+                                                   {Status::NotVerified, "not verified"},
+                                                   {Status::Unreadable, "unreadable"},
+                                                   {Status::Malformed, "malformed"},
+                                                   {Status::Unsupported, "unsupported"},
+                                                   {Status::Unwritable, "unwritable"},
+                                                   {Status::Usage, "usage"},
+                                                   {Status::Failed, "failed"},
+                                                   {Status::Interrupted, "interrupted"}}};
+
+Status status_named(const std::string& name) {
+  for (const StatusName& known : kStatusNames) {
+    if (known.name == name) return known.status;
+  }
+  throw Error(ErrorCode::Malformed, {}, "", "unknown status \"" + name + "\"");
+}
+
+Json options_of(const Record& record) {
+  const MarkOptions& options = record.job.settings.options;
+  return {{"layout", name_of(options.layout)},
+          {"assign", name_of(options.assign)},
+          {"cost", name_of(options.scheme_options.cost)},
+          {"redundancy", options.redundancy},
+          {"marker_bits", record.format.marker_bits},
+          {"subscript_bits", record.format.subscript_bits},
+          {"part_bits", record.format.part_bits},
+          {"step", options.scheme_options.step}};
+}
+
+}  // namespace
+
+std::string_view name_of(Status status) {
+  for (const StatusName& known : kStatusNames) {
+    if (known.status == status) return known.name;
+  }
+  return "failed";
+}
+
+Json to_json(const Record& record, std::uint64_t peak_bytes) {
+  const JobSettings& settings = record.job.settings;
+  Json json = {{"schema", kRecordSchema},
+               {"mesh", record.job.mesh.string()},
+               {"out", record.job.out.string()},
+               {"scheme", settings.options.scheme},
+               {"status", name_of(record.status)}};
+  if (!record.error.empty()) json["error"] = record.error;
+  json.update(Json{{"file_format", record.file_format},
+                   {"vertices", record.vertices},
+                   {"points", record.points},
+                   {"faces", record.faces},
+                   {"candidates", record.candidates},
+                   {"units_valid", record.units_valid},
+                   {"units_assigned", record.units_assigned},
+                   {"units_embedded", record.units_embedded},
+                   {"units_bound", record.units_bound},
+                   {"parts", record.parts},
+                   {"fill", settings.fill}});
+  if (!settings.fill) {
+    json["message_hex"] = to_hex(settings.message);
+    json["message_bits"] = 8 * settings.message.size();
+  } else {
+    json["message_bits"] = std::uint64_t{record.parts} * record.format.part_bits;
+  }
+  json.update(Json{{"cost_max", record.cost_max},
+                   {"cost_sum", record.cost_sum},
+                   {"hausdorff", record.hausdorff},
+                   {"hausdorff_rel_diag", record.hausdorff_rel_diag},
+                   {"displacement_max", record.displacement_max},
+                   {"displacement_rms", record.displacement_rms},
+                   {"input_hash", record.input_hash},
+                   {"output_hash", record.output_hash},
+                   {"key", record.key_fingerprint},
+                   {"options", options_of(record)},
+                   {"run",
+                    {{"load_s", record.times.load},
+                     {"mark_s", record.times.mark},
+                     {"write_s", record.times.write},
+                     {"read_back_s", record.times.read_back},
+                     {"measure_s", record.times.measure},
+                     {"memory_estimate", record.memory_estimate},
+                     {"peak_bytes", peak_bytes}}}});
+  return json;
+}
+
+RecordedMark parse_record(const std::string& line) try {
+  const auto json = nlohmann::json::parse(line);
+  if (!json.is_object() || json.value("schema", 0) != kRecordSchema) {
+    throw Error(ErrorCode::Malformed, {}, "", "not a record of schema 1");
+  }
+  RecordedMark mark;
+  mark.out = json.at("out").get<std::string>();
+  mark.status = status_named(json.at("status").get<std::string>());
+  mark.settings.fill = json.at("fill").get<bool>();
+  if (!mark.settings.fill) mark.settings.message = from_hex(json.at("message_hex"));
+  const auto& options = json.at("options");
+  mark.settings.options.scheme = json.at("scheme").get<std::string>();
+  mark.settings.options.scheme_options.step = options.at("step").get<double>();
+  mark.format = {options.at("marker_bits").get<int>(), options.at("subscript_bits").get<int>(),
+                 options.at("part_bits").get<int>()};
+  validate(mark.format);
+  mark.settings.options.format = mark.format;
+  mark.parts = json.at("parts").get<std::uint32_t>();
+  mark.units_embedded = json.at("units_embedded").get<std::uint32_t>();
+  mark.output_hash = json.at("output_hash").get<std::string>();
+  mark.key_fingerprint = json.at("key").get<std::string>();
+  return mark;
+} catch (const nlohmann::json::exception& error) {
+  throw Error(ErrorCode::Malformed, {}, "", error.what());
+}
+
+}  // namespace triglyph
