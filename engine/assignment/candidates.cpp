@@ -1,0 +1,87 @@
+#include "engine/assignment/candidates.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace triglyph {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t kChunksPerWanted = 2;  // more sharpen the cut, fewer make it cheaper
+constexpr std::size_t kTiesPerWanted = 2;    // equally good units listed before we cut
+
+double key_of(float cost, double price, float limit) {
+  return (cost <= limit ? static_cast<double>(cost) : kInfinity) + price;
+}
+
+CandidateList list_all(std::span<const float> column, std::span<const double> prices, float limit) {
+  CandidateList list{{}, kInfinity};
+  for (std::size_t unit = 0; unit < column.size(); ++unit) {
+    if (key_of(column[unit], prices[unit], limit) < kInfinity) {
+      list.pairs.push_back({static_cast<std::uint32_t>(unit), column[unit]});
+    }
+  }
+  return list;
+}
+
+std::vector<double> find_chunk_minima(std::span<const float> column, std::span<const double> prices,
+                                      float limit, std::size_t length) {
+  std::vector<double> minima((column.size() + length - 1) / length);
+  for (std::size_t chunk = 0; chunk < minima.size(); ++chunk) {
+    const std::size_t end = std::min(column.size(), (chunk + 1) * length);
+    double least = kInfinity;
+    for (std::size_t unit = chunk * length; unit < end; ++unit) {
+      const double key = key_of(column[unit], prices[unit], limit);
+      least = key < least ? key : least;
+    }
+    minima[chunk] = least;
+  }
+  return minima;
+}
+
+}  // namespace
+
+// The wanted-th smallest of the chunks' minima is a cut with at least `wanted` pairs at or below
+// it, found without ordering the column. Units that tie at the cut are collected from a place that
+// differs from word to word: words that all like the same thousand units alike (units whose cost
+// hardly depends on the word) then list different ones of them.
+CandidateList pick_candidates(std::span<const float> column, std::span<const double> prices,
+                              const CandidateQuery& query) {
+  const std::size_t length =
+      column.size() / (kChunksPerWanted * std::max<std::size_t>(1, query.wanted));
+  if (length < 2) return list_all(column, prices, query.limit);
+  const std::vector<double> minima = find_chunk_minima(column, prices, query.limit, length);
+  std::vector<double> ordered = minima;
+  const auto nth = ordered.begin() + static_cast<std::ptrdiff_t>(query.wanted) - 1;
+  std::nth_element(ordered.begin(), nth, ordered.end());
+  const double cut = *nth;
+  if (cut == kInfinity) return list_all(column, prices, query.limit);
+
+  CandidateList list;
+  list.pairs.reserve(2 * query.wanted);
+  std::size_t ties_left = kTiesPerWanted * query.wanted;
+  bool left_out_ties = false;
+  const std::size_t first = query.spread % minima.size();
+  for (std::size_t k = 0; k < minima.size(); ++k) {
+    const std::size_t chunk = (first + k) % minima.size();
+    if (minima[chunk] > cut) continue;
+    const std::size_t end = std::min(column.size(), (chunk + 1) * length);
+    for (std::size_t unit = chunk * length; unit < end; ++unit) {
+      const double key = key_of(column[unit], prices[unit], query.limit);
+      if (key > cut) continue;
+      if (key == cut) {
+        if (ties_left == 0) {
+          left_out_ties = true;
+          continue;
+        }
+        --ties_left;
+      }
+      list.pairs.push_back({static_cast<std::uint32_t>(unit), column[unit]});
+    }
+  }
+  list.bound = left_out_ties ? cut : std::nextafter(cut, kInfinity);
+  return list;
+}
+
+}  // namespace triglyph

@@ -1,0 +1,80 @@
+// This work is based on:
+//  - A. L. Dulmage, N. S. Mendelsohn: Coverings of bipartite graphs, 1958: where not every copy of
+//    every word can be served, the words that compete for too few units and all the others are two
+//    problems of their own, in each of which one side is served completely. That settles which
+//    copies go without, by least sum, and needs no penalty large enough to drown the costs.
+#include "engine/assignment/least_sum.h"
+
+#include <atomic>
+#include <limits>
+#include <utility>
+
+#include "engine/assignment/assignment.h"
+#include "engine/assignment/transport.h"
+#include "engine/base/error.h"
+#include "engine/base/parallel.h"
+
+namespace triglyph {
+namespace {
+
+std::uint64_t count_copies(std::span<const std::uint32_t> demand) {
+  std::uint64_t copies = 0;
+  for (const std::uint32_t wanted : demand) copies += wanted;
+  return copies;
+}
+
+}  // namespace
+
+void check_costs(const CostMatrix& costs, std::span<const std::uint32_t> demand) {
+  check(demand.size() == costs.words, "one demand a word");
+  check(costs.values.size() == static_cast<std::size_t>(costs.units) * costs.words,
+        "one cost a pair");
+  std::atomic<bool> is_good = true;
+  parallel_for(
+      costs.words,
+      [&](std::size_t word) {
+        bool is_column_good = true;
+        for (const float cost : costs.column(static_cast<std::uint32_t>(word))) {
+          is_column_good &= cost >= 0;
+        }
+        if (!is_column_good) is_good = false;
+      },
+      16);
+  check(is_good, "costs are numbers >= 0 or infinite");
+}
+
+std::vector<std::uint32_t> minimise_sum(const CostMatrix& costs,
+                                        std::span<const std::uint32_t> demand, float limit,
+                                        const ThresholdGraph& graph, const Matching& maximum) {
+  std::vector<std::uint8_t> all_units(costs.units, 1);
+  if (maximum.matched == count_copies(demand)) {
+    return solve_transport({costs, demand, all_units, limit});
+  }
+  const Scarcity scarcity = find_scarcity(graph, maximum);
+  std::vector<std::uint32_t> word_of_unit(costs.units, kNoWord);
+  for (const std::uint8_t is_scarce : {std::uint8_t{0}, std::uint8_t{1}}) {
+    std::vector<std::uint32_t> part_demand(demand.begin(), demand.end());
+    for (std::uint32_t word = 0; word < costs.words; ++word) {
+      if (scarcity.is_scarce_word[word] != is_scarce) part_demand[word] = 0;
+    }
+    std::vector<std::uint8_t> part_units(costs.units);
+    for (std::uint32_t unit = 0; unit < costs.units; ++unit) {
+      part_units[unit] = scarcity.is_scarce_unit[unit] == is_scarce ? 1 : 0;
+    }
+    const auto part = solve_transport({costs, part_demand, part_units, limit});
+    for (std::uint32_t unit = 0; unit < costs.units; ++unit) {
+      if (part_units[unit] != 0) word_of_unit[unit] = part[unit];
+    }
+  }
+  return word_of_unit;
+}
+
+Assignment assign_least_sum(const CostMatrix& costs, std::span<const std::uint32_t> demand) {
+  check_costs(costs, demand);
+  constexpr float kAllFinite = std::numeric_limits<float>::max();
+  const ThresholdGraph graph(costs, kAllFinite);
+  const Matching maximum = grow_maximum_matching(graph, empty_matching(costs.units, demand));
+  return weigh_assignment(costs, minimise_sum(costs, demand, kAllFinite, graph, maximum));
+}
+
+}  // namespace triglyph
