@@ -23,7 +23,7 @@ inline constexpr std::size_t kMaxMessageBytes = 256;
 struct WordFormat {
   int marker_bits = 6;     // m
   int subscript_bits = 8;  // s: at most 2^s different parts
-  int part_bits = 12;      // w
+  int part_bits = 9;       // w
 
   bool operator==(const WordFormat&) const = default;
 };

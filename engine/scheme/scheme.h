@@ -58,7 +58,7 @@ enum class CostFunction {
 [[nodiscard]] CostFunction cost_function(const std::string& name);
 
 struct SchemeOptions {
-  double step = 0.03;  // width of a quantiser cell, dimensionless
+  double step = 0.02;  // width of a quantiser cell, dimensionless
   CostFunction cost = CostFunction::Displacement;
 };
 

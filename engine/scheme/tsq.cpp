@@ -15,7 +15,8 @@ using Quadruple = std::array<std::uint32_t, 6>;  // v0, v1, v2 of M from its bas
 constexpr double kMinHeight = 0.02;       // flatter triangles have no stable plane to move in
 constexpr double kLongestGap = 0.01;      // the base stays this much longer than the other edges
 constexpr double kMaxMove = 0.5;          // a cell farther away is not worth a unit
-constexpr std::size_t kUnitsPerBlock = 16;  // rows of the cost matrix computed together
+constexpr std::size_t kUnitsPerBlock = 16;  // rows of the cost matrix a thread takes at a time
+constexpr int kMaxNumberBits = 8;  // a channel's 16 bits at most are shared by two numbers
 
 // Which corner of triangle `face` the longest edge leaves; the first of equals.
 std::uint32_t longest_side(const Mesh& mesh, std::uint32_t face) {
@@ -81,6 +82,97 @@ struct Frame {
 
 }  // namespace
 
+// The apexes that carry each value of a channel, for one triangle. The nearest cell of the height
+// and the nearest of the ratio are tried first; only where no triangle has that shape, or the caller
+// refuses it, the next cells on the other side.
+class TsqScheme::ApexChoices {
+ public:
+  ApexChoices(const FlatTriangle& triangle, const Channel& channel)
+      : triangle_(triangle), channel_(channel), shape_(triangle.shape()) {}
+
+  // Calls accept(x, height), both in units of the base, for legal apexes; the cells behind the
+  // nearest are tried only if it is not accepted.
+  template <typename Accept>
+  void for_each_cell(std::uint32_t bits, const Accept& accept) const {
+    const std::uint32_t height_bits = channel_.height_bits(bits);
+    const std::uint32_t ratio_bits = channel_.ratio_bits(bits);
+    const double height = near_height(height_bits);
+    const double ratio = channel_.log_ratio.nearest_centre(shape_.log_ratio, ratio_bits);
+    const auto consider = [&](double h, double tanh_ratio) {
+      if (h < kMinHeight) return false;
+      const std::optional<double> x = apex_x(h, tanh_ratio, triangle_.x);
+      return x && accept(*x, h);
+    };
+    if (consider(height, std::tanh(ratio))) return;
+    const double next_height = channel_.height.second_centre(shape_.height, height);
+    const double next_ratio = channel_.log_ratio.second_centre(shape_.log_ratio, ratio);
+    consider(height, std::tanh(next_ratio));
+    consider(next_height, std::tanh(ratio));
+    consider(next_height, std::tanh(next_ratio));
+  }
+
+  // The apex for these bits, or nothing if it is farther than kMaxMove bases away.
+  [[nodiscard]] std::optional<Apex> place(std::uint32_t bits) const {
+    std::optional<Apex> best;
+    double best_move = kMaxMove;
+    for_each_cell(bits, [&](double x, double height) {
+      const double move = length(x - triangle_.x, height - triangle_.height);
+      if (move >= best_move) return false;
+      best_move = move;
+      best = Apex{x, height, move * triangle_.base};
+      return true;
+    });
+    return best;
+  }
+
+ private:
+  [[nodiscard]] double near_height(std::uint32_t bits) const {
+    return channel_.height.nearest_centre(shape_.height, bits);
+  }
+
+  const FlatTriangle& triangle_;
+  const Channel& channel_;
+  TriangleShape shape_;
+};
+
+// The moves of one triangle's apex for many values of its channel: place() with the nearest cells
+// tabulated, since a channel has few heights and few ratios but many pairs of them.
+class TsqScheme::ApexMoves {
+ public:
+  ApexMoves(const FlatTriangle& triangle, const Channel& channel)
+      : triangle_(triangle), channel_(channel), choices_(triangle, channel) {
+    const TriangleShape shape = triangle.shape();
+    for (std::uint32_t bits = 0; bits < 1U << channel.height.bits(); ++bits) {
+      heights_[bits] = channel.height.nearest_centre(shape.height, bits);
+    }
+    for (std::uint32_t bits = 0; bits < 1U << channel.log_ratio.bits(); ++bits) {
+      tanh_ratios_[bits] = std::tanh(channel.log_ratio.nearest_centre(shape.log_ratio, bits));
+    }
+  }
+
+  // Model units; kInfeasible where the apex cannot be placed.
+  [[nodiscard]] float move(std::uint32_t bits) const {
+    const double height = heights_[channel_.height_bits(bits)];
+    const double tanh_ratio = tanh_ratios_[channel_.ratio_bits(bits)];
+    if (height >= kMinHeight) {
+      const std::optional<double> x = apex_x(height, tanh_ratio, triangle_.x);
+      if (x) {
+        const double move = length(*x - triangle_.x, height - triangle_.height);
+        if (move < kMaxMove) return static_cast<float>(move * triangle_.base);
+      }
+    }
+    const std::optional<Apex> apex = choices_.place(bits);
+    return apex ? static_cast<float>(apex->move) : kInfeasible;
+  }
+
+ private:
+  const FlatTriangle& triangle_;
+  const Channel& channel_;
+  ApexChoices choices_;
+  std::array<double, std::size_t{1} << kMaxNumberBits> heights_;
+  std::array<double, std::size_t{1} << kMaxNumberBits> tanh_ratios_;
+};
+
 TsqScheme::Channel TsqScheme::make_channel(const WordCode& code, double step, int bits,
                                            std::size_t role) {
   const int height_bits = bits / 2;
@@ -102,32 +194,22 @@ TsqScheme::TsqScheme(const WordCode& code, const SchemeOptions& options)
   }
 }
 
-// The four nearest cells that carry the marker, two a number; the cheapest legal one.
-std::optional<FlatCorners> TsqScheme::cheapest_marker(const FlatTriangle& triangle) const {
-  const TriangleShape shape = triangle.shape();
-  const auto& [height, log_ratio] = marker_channel_;
-  const double near_height = height.nearest_centre(shape.height,
-                                                   marker_channel_.height_bits(marker_));
-  const double near_ratio =
-      log_ratio.nearest_centre(shape.log_ratio, marker_channel_.ratio_bits(marker_));
+std::optional<FlatCorners> TsqScheme::reshape_to_marker(const FlatTriangle& triangle) const {
+  const ApexChoices choices(triangle, marker_channel_);
   std::optional<FlatCorners> best;
   double best_move = kMaxMove * triangle.base;
-  for (const double h : {near_height, height.second_centre(shape.height, near_height)}) {
-    if (h < kMinHeight) continue;
-    for (const double r : {near_ratio, log_ratio.second_centre(shape.log_ratio, near_ratio)}) {
-      const std::optional<double> x = apex_x(h, std::tanh(r), triangle.x);
-      if (!x || !keeps_longest_base(*x, h)) continue;
-      const FlatCorners moved = reshape(triangle, *x, h);
-      const double move = std::max({length(moved.x[0], moved.y[0]),
-                                    length(moved.x[1] - triangle.base, moved.y[1]),
-                                    length(moved.x[2] - triangle.base * triangle.x,
-                                           moved.y[2] - triangle.base * triangle.height)});
-      if (move < best_move) {
-        best_move = move;
-        best = moved;
-      }
-    }
-  }
+  choices.for_each_cell(marker_, [&](double x, double height) {
+    if (!keeps_longest_base(x, height)) return false;
+    const FlatCorners moved = reshape(triangle, x, height);
+    const double move = std::max({length(moved.x[0], moved.y[0]),
+                                  length(moved.x[1] - triangle.base, moved.y[1]),
+                                  length(moved.x[2] - triangle.base * triangle.x,
+                                         moved.y[2] - triangle.base * triangle.height)});
+    if (move >= best_move) return false;
+    best_move = move;
+    best = moved;
+    return true;
+  });
   return best;
 }
 
@@ -137,7 +219,7 @@ std::optional<TsqScheme::Marked> TsqScheme::embed_marker(
                                     mesh.positions[points[2]]};
   const FlatTriangle triangle = flatten(corners[0], corners[1], corners[2]);
   if (!(triangle.base > 0 && triangle.height >= kMinHeight)) return std::nullopt;
-  const std::optional<FlatCorners> flat = cheapest_marker(triangle);
+  const std::optional<FlatCorners> flat = reshape_to_marker(triangle);
   if (!flat) return std::nullopt;
 
   const Frame frame(corners[0], corners[1], corners[2]);
@@ -153,36 +235,6 @@ std::optional<TsqScheme::Marked> TsqScheme::embed_marker(
     if (!(marked.outer[i].height >= kMinHeight)) return std::nullopt;
   }
   return marked;
-}
-
-// The nearest cells of the wanted bits; where no triangle has that shape, the next cells of each
-// number, the nearest legal apex of them.
-std::optional<TsqScheme::Apex> TsqScheme::place_apex(const FlatTriangle& triangle,
-                                                     const Channel& channel, std::uint32_t bits) {
-  const TriangleShape shape = triangle.shape();
-  const double near_height =
-      channel.height.nearest_centre(shape.height, channel.height_bits(bits));
-  const double near_ratio =
-      channel.log_ratio.nearest_centre(shape.log_ratio, channel.ratio_bits(bits));
-  std::optional<Apex> best;
-  double best_move = kMaxMove;
-  const auto consider = [&](double height, double log_ratio) {
-    if (height < kMinHeight) return;
-    const std::optional<double> x = apex_x(height, std::tanh(log_ratio), triangle.x);
-    if (!x) return;
-    const double move = length(*x - triangle.x, height - triangle.height);
-    if (move >= best_move) return;
-    best_move = move;
-    best = Apex{*x, height, move * triangle.base};
-  };
-  consider(near_height, near_ratio);
-  if (best) return best;
-  const double next_height = channel.height.second_centre(shape.height, near_height);
-  const double next_ratio = channel.log_ratio.second_centre(shape.log_ratio, near_ratio);
-  consider(near_height, next_ratio);
-  consider(next_height, near_ratio);
-  consider(next_height, next_ratio);
-  return best;
 }
 
 std::array<std::uint32_t, 3> TsqScheme::outer_bits(const Word& word) const {
@@ -228,30 +280,21 @@ CostMatrix TsqScheme::costs(const Surface& surface, const UnitSet& units,
   CostMatrix matrix{static_cast<std::uint32_t>(chosen.size()),
                     static_cast<std::uint32_t>(words.size()), {}};
   matrix.values.resize(chosen.size() * words.size());
-  const auto move_for = [](const FlatTriangle& triangle, const Channel& channel,
-                           std::uint32_t bits) {
-    const std::optional<Apex> apex = place_apex(triangle, channel, bits);
-    return apex ? static_cast<float>(apex->move) : kInfeasible;
-  };
   const auto fill_row = [&](std::size_t row) {
+    const auto cost = [&](std::size_t column) -> float& {
+      return matrix.values[column * chosen.size() + row];
+    };
     const std::optional<Marked> marked = embed_marker(surface.mesh, units.moved[chosen[row]]);
-    // the part's two halves take few values, so they are tabulated; subscripts are many and distinct
-    std::array<std::vector<float>, 2> data;
-    for (std::size_t d = 0; marked && d < 2; ++d) {
-      data[d].resize(std::size_t{1} << outer_channels_[1 + d].bits());
-      for (std::uint32_t bits = 0; bits < data[d].size(); ++bits) {
-        data[d][bits] = move_for(marked->outer[1 + d], outer_channels_[1 + d], bits);
-      }
+    if (!marked) {
+      for (std::size_t column = 0; column < words.size(); ++column) cost(column) = kInfeasible;
+      return;
     }
+    const ApexMoves s(marked->outer[0], outer_channels_[0]);
+    const ApexMoves d1(marked->outer[1], outer_channels_[1]);
+    const ApexMoves d2(marked->outer[2], outer_channels_[2]);
     for (std::size_t column = 0; column < words.size(); ++column) {
-      float& cost = matrix.values[column * chosen.size() + row];
-      if (!marked) {
-        cost = kInfeasible;
-        continue;
-      }
       const auto bits = outer_bits(words[column]);
-      cost = combine(*marked, move_for(marked->outer[0], outer_channels_[0], bits[0]),
-                     data[0][bits[1]], data[1][bits[2]]);
+      cost(column) = combine(*marked, s.move(bits[0]), d1.move(bits[1]), d2.move(bits[2]));
     }
   };
   parallel_for(chosen.size(), fill_row, kUnitsPerBlock);
@@ -270,7 +313,7 @@ Embedding TsqScheme::embed(const Surface& surface, const UnitSet& units,
     std::array<Vec3, 3> apexes;
     for (std::size_t i = 0; i < 3; ++i) {
       const FlatTriangle& triangle = marked->outer[i];
-      const std::optional<Apex> apex = place_apex(triangle, outer_channels_[i], bits[i]);
+      const std::optional<Apex> apex = ApexChoices(triangle, outer_channels_[i]).place(bits[i]);
       if (!apex) return false;
       const Frame frame(marked->corners[(i + 1) % 3], marked->corners[i],
                         surface.mesh.positions[points[3 + i]]);

@@ -71,13 +71,14 @@ class TsqScheme final : public Scheme {
     double move = 0;    // model units
   };
 
+  class ApexChoices;
+  class ApexMoves;
+
   [[nodiscard]] static Channel make_channel(const WordCode& code, double step, int bits,
                                             std::size_t role);
-  [[nodiscard]] std::optional<FlatCorners> cheapest_marker(const FlatTriangle& triangle) const;
+  [[nodiscard]] std::optional<FlatCorners> reshape_to_marker(const FlatTriangle& triangle) const;
   [[nodiscard]] std::optional<Marked> embed_marker(const Mesh& mesh,
                                                    std::span<const std::uint32_t> points) const;
-  [[nodiscard]] static std::optional<Apex> place_apex(const FlatTriangle& triangle,
-                                                      const Channel& channel, std::uint32_t bits);
   [[nodiscard]] std::array<std::uint32_t, 3> outer_bits(const Word& word) const;
   [[nodiscard]] float combine(const Marked& marked, float s, float d1, float d2) const;
   [[nodiscard]] bool has_marker(const Mesh& mesh, const std::array<std::uint32_t, 6>& points,
