@@ -17,7 +17,7 @@ namespace triglyph {
 enum class FileFormat { Obj, Off, PlyAscii, PlyLittle, PlyBig, StlAscii, StlBinary };
 
 // Stable name for records ("ply binary_little_endian").
-[[nodiscard]] std::string_view name_of(FileFormat format);
+[[nodiscard]] std::string_view name_of(FileFormat format) noexcept;
 
 class MeshFile {
  public:
@@ -26,6 +26,9 @@ class MeshFile {
   // Throws Error: Unreadable (absent, no permission, not a regular file, empty), Malformed (with
   // line or byte), Unsupported (unknown ending or variant). O(bytes).
   [[nodiscard]] static MeshFile open(const std::filesystem::path& path);
+
+  // The same for bytes in memory: `name` gives the ending and stands in messages.
+  [[nodiscard]] static MeshFile read(std::vector<char> bytes, const std::filesystem::path& name);
 
   MeshFile(MeshFile&&) noexcept;
   MeshFile& operator=(MeshFile&&) noexcept;
@@ -41,14 +44,20 @@ class MeshFile {
   // a point are left out.
   [[nodiscard]] const Mesh& mesh() const;
 
-  // The nearest point the file's own number format can hold.
+  // The point of every coordinate triple in the file.
+  [[nodiscard]] std::span<const std::uint32_t> point_of_vertex() const;
+
+  // The nearest point the file's own number format can hold. Text files get no more decimals and
+  // no more significant digits than they have, so a file of "%.6f" or "%g" stays one.
   [[nodiscard]] Vec3 round(const Vec3& point) const;
 
   // The largest distance, along one axis, between neighbouring numbers of the file's format at the
   // magnitudes that occur in it; model units.
   [[nodiscard]] double number_step() const;
 
-  // The file with point i at positions[i]. Points that are bitwise where they were keep their bytes.
+  // The file with point i at positions[i]. A coordinate that is where it was, or that rounds to
+  // where it was, keeps its bytes; every other one reads back as round(positions[i]).
+  // note: polygons are cut by their positions, so the triangles read back can be cut another way.
   // Precondition: positions.size() == mesh().positions.size(), all finite.
   [[nodiscard]] std::vector<char> patched(std::span<const Vec3> positions) const;
 
