@@ -1,0 +1,107 @@
+#include <cstdio>
+#include <iostream>
+#include <memory>
+
+#include "cli/app.h"
+#include "cli/options.h"
+#include "cli/verbs.h"
+#include "engine/base/error.h"
+#include "engine/base/output_file.h"
+#include "engine/base/random.h"
+#include "engine/mesh/export_mesh.h"
+#include "engine/mesh/sample_shapes.h"
+#include "manifests/run.h"
+
+namespace triglyph {
+namespace {
+
+struct SampleArguments {
+  std::filesystem::path out;
+  std::size_t count = 1;
+  std::size_t triangles = 10000;
+  std::uint64_t seed = 1;
+  std::string shape = "all";
+  std::string format = "obj";
+  bool ascii = false;
+  MachineArguments machine;
+};
+
+// Names of the shapes on the command line and in file names; "all" takes them in turn.
+struct NamedShape {
+  const char* name;
+  SampleShape shape;
+};
+constexpr std::array<NamedShape, 3> kShapes{{{"closed", SampleShape::Closed},
+                                             {"open", SampleShape::Open},
+                                             {"high-genus", SampleShape::HighGenus}}};
+
+const NamedShape& shape_of(const SampleArguments& arguments, std::size_t index) {
+  for (const NamedShape& shape : kShapes) {
+    if (arguments.shape == shape.name) return shape;
+  }
+  return kShapes[index % kShapes.size()];
+}
+
+ExportFormat export_format(const SampleArguments& arguments) {
+  ExportFormat format;
+  format.significant_digits = 9;  // text that a float reader takes without loss
+  if (arguments.format == "off") format.format = FileFormat::Off;
+  if (arguments.format == "ply") {
+    format.format = arguments.ascii ? FileFormat::PlyAscii : FileFormat::PlyLittle;
+  }
+  if (arguments.format == "stl") {
+    format.format = arguments.ascii ? FileFormat::StlAscii : FileFormat::StlBinary;
+  }
+  return format;
+}
+
+int run_sample(const SampleArguments& arguments) {
+  with_threads(arguments.machine.threads(), [&] {
+    for (std::size_t i = 0; i < arguments.count; ++i) {
+      const NamedShape& shape = shape_of(arguments, i);
+      const Mesh mesh =
+          make_sample_shape(shape.shape, arguments.triangles, random_bits(arguments.seed, 0, i));
+      std::array<char, 64> name{};
+      std::snprintf(name.data(), name.size(), "%04zu-%s.%s", i, shape.name,
+                    arguments.format.c_str());
+      OutputFile file(arguments.out / name.data());
+      file.write(export_mesh(mesh, export_format(arguments)));
+      file.commit();
+      std::cout << (arguments.out / name.data()).string() << ": " << mesh.positions.size()
+                << " vertices, " << mesh.triangles.size() << " triangles\n";
+    }
+  });
+  return kDone;
+}
+
+}  // namespace
+
+void add_sample_verb(CLI::App& app, Action& action) {
+  CLI::App* verb =
+      app.add_subcommand("sample", "Make procedural meshes for trials and benchmarks");
+  auto arguments = std::make_shared<SampleArguments>();
+  verb->add_option("--out", arguments->out, "Directory for the meshes")
+      ->required()
+      ->type_name("DIR");
+  verb->add_option("--count", arguments->count, "How many")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  verb->add_option("--triangles", arguments->triangles, "Triangles of each, about")
+      ->check(CLI::Range(12, 20000000))
+      ->capture_default_str();
+  verb->add_option("--seed", arguments->seed, "The same seed makes the same meshes")
+      ->capture_default_str();
+  verb->add_option("--shape", arguments->shape, "closed, open, high-genus, or all in turn")
+      ->check(CLI::IsMember({"all", "closed", "open", "high-genus"}))
+      ->capture_default_str();
+  verb->add_option("--format", arguments->format, "obj, off, ply or stl")
+      ->check(CLI::IsMember({"obj", "off", "ply", "stl"}))
+      ->capture_default_str();
+  verb->add_flag("--ascii", arguments->ascii, "Text instead of binary PLY and STL");
+  arguments->machine.add_threads_to(*verb);
+  verb->callback([&action, arguments] {
+    action = [arguments] { return run_sample(*arguments); };
+  });
+}
+
+}  // namespace triglyph

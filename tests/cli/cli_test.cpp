@@ -1,0 +1,217 @@
+// The real executable, as a user runs it: exit codes, stdout as data, stderr as messages, files.
+#include <chrono>
+#include <cstdlib>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "engine/base/output_file.h"
+#include "engine/mesh/export_mesh.h"
+#include "engine/mesh/sample_shapes.h"
+#include "tests/support/temp_folder.h"
+
+namespace triglyph {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Result {
+  int code = 0;
+  std::string out;
+  std::string err;
+};
+
+class Cli : public testing::Test {
+ protected:
+  // Arguments are words for the shell; the folder of the test is the working directory.
+  Result run(const std::string& arguments) const {
+    const std::string command = "cd '" + folder_.path().string() + "' && '" TRIGLYPH_EXECUTABLE "' " +
+                                arguments + " >.out 2>.err </dev/null";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128, test::read_all(folder_ / ".out"),
+            test::read_all(folder_ / ".err")};
+  }
+
+  void make_sample(const std::string& name, std::size_t triangles) const {
+    OutputFile file(folder_ / name);
+    file.write(export_mesh(make_sample_shape(SampleShape::Closed, triangles, 1), {}));
+    file.commit();
+  }
+
+  test::TempFolder folder_;
+};
+
+TEST_F(Cli, VersionAndHelpSucceedAndUsageErrorsAreTwo) {
+  EXPECT_EQ(run("--version").code, 0);
+  EXPECT_NE(run("--version").out.find("triglyph 0."), std::string::npos);
+  EXPECT_EQ(run("--help").code, 0);
+  EXPECT_EQ(run("mark --help").code, 0);
+  for (const char* wrong : {"", "frobnicate", "mark", "mark a.obj --layout best --out o",
+                            "mark a.obj", "mark a.obj --out o --message a --fill",
+                            "mark a.obj --out o --message-hex xy", "extract",
+                            "mark a.obj --out o --subscript-bits 2", "mark a.obj --out o --threads 0",
+                            "extract a.obj --key-file absent.key", "mark absent.jsonl --out o",
+                            "verify absent.jsonl"}) {
+    const Result result = run(wrong);
+    EXPECT_EQ(result.code, 2) << wrong;
+    EXPECT_EQ(result.out, "") << wrong;
+    EXPECT_NE(result.err, "") << wrong;
+  }
+}
+
+TEST_F(Cli, MarksExtractsAndVerifies) {
+  make_sample("a.obj", 4000);
+  EXPECT_EQ(run("keygen --out k.key").code, 0);
+  EXPECT_EQ(run("keygen --out k.key").code, 1);  // never overwritten
+  const Result marked = run(
+      "mark a.obj --out o --message 'for Ada' --key-file k.key --records r.jsonl --json");
+  EXPECT_EQ(marked.code, 0) << marked.err;
+  EXPECT_EQ(marked.err, "");
+  EXPECT_EQ(marked.out, test::read_all(folder_ / "r.jsonl"));
+  const auto record = nlohmann::json::parse(marked.out);
+  EXPECT_EQ(record["status"], "marked");
+  EXPECT_EQ(record["message_hex"], "666f7220416461");
+
+  const Result extracted = run("extract o/a.obj --key-file k.key");
+  EXPECT_EQ(extracted.code, 0);
+  EXPECT_NE(extracted.out.find("\"for Ada\""), std::string::npos);
+  const Result as_json = run("extract o/a.obj --key-file k.key --json");
+  EXPECT_EQ(nlohmann::json::parse(as_json.out)["message_hex"], "666f7220416461");
+
+  const Result trial = run("extract o/a.obj");
+  EXPECT_EQ(trial.code, 3);
+  EXPECT_NE(trial.out.find("no mark"), std::string::npos);
+  EXPECT_NE(trial.err.find("trial key"), std::string::npos);
+  EXPECT_EQ(run("extract a.obj --key-file k.key").code, 3);
+
+  EXPECT_EQ(run("verify r.jsonl --key-file k.key").code, 0);
+  fs::remove(folder_ / "o/a.obj");
+  const Result missing = run("verify r.jsonl --key-file k.key --json");
+  EXPECT_EQ(missing.code, 3);
+  EXPECT_EQ(nlohmann::json::parse(missing.out)["verdict"], "missing");
+}
+
+TEST_F(Cli, GoesOnAfterABadMeshAndSaysSo) {
+  make_sample("good.obj", 3000);
+  folder_.write("bad.obj", "v 1 2\nf 1 2 3\n");
+  folder_.write("m.jsonl", "{\"mesh\": \"bad.obj\"}\n{\"mesh\": \"good.obj\"}\n");
+  const Result result = run("mark m.jsonl --out o --json");
+  EXPECT_EQ(result.code, 3);
+  std::istringstream lines(result.out);
+  std::string line;
+  std::getline(lines, line);
+  const auto bad = nlohmann::json::parse(line);
+  EXPECT_EQ(bad["status"], "malformed");
+  EXPECT_NE(bad["error"].get<std::string>().find("bad.obj: line 1: "), std::string::npos);
+  std::getline(lines, line);
+  EXPECT_EQ(nlohmann::json::parse(line)["status"], "marked");
+  EXPECT_TRUE(fs::exists(folder_ / "o/good.obj"));
+  EXPECT_FALSE(fs::exists(folder_ / "o/bad.obj"));
+}
+
+TEST_F(Cli, TableIsOnStdoutAndNoProgressBarInAPipe) {
+  make_sample("a.obj", 3000);
+  const Result result = run("mark a.obj --out o");
+  EXPECT_EQ(result.code, 0);
+  EXPECT_NE(result.out.find("verdict"), std::string::npos);
+  EXPECT_NE(result.out.find("marked"), std::string::npos);
+  EXPECT_EQ(result.err.find('\r'), std::string::npos);
+}
+
+TEST_F(Cli, AnOutputNeverOverwritesAnInput) {
+  make_sample("a.obj", 3000);
+  const std::string before = test::read_all(folder_ / "a.obj");
+  EXPECT_EQ(run("mark a.obj --out .").code, 2);
+  EXPECT_EQ(run("mark a.obj ./a.obj --out o").code, 2);
+  EXPECT_EQ(run("mark a.obj --out o --records a.obj").code, 2);
+  EXPECT_EQ(test::read_all(folder_ / "a.obj"), before);
+  EXPECT_FALSE(fs::exists(folder_ / "o"));
+}
+
+TEST_F(Cli, UnwritableOutputIsARecord) {
+  make_sample("a.obj", 3000);
+  folder_.write("o", "a file where the folder should be");
+  const Result result = run("mark a.obj --out o --json");
+  EXPECT_EQ(result.code, 3);
+  EXPECT_EQ(nlohmann::json::parse(result.out)["status"], "unwritable");
+  EXPECT_EQ(run("mark a.obj --out p --records /dev/full").code, 1);
+}
+
+TEST_F(Cli, ConfigFileStandsInForArguments) {
+  make_sample("a.obj", 3000);
+  folder_.write("c.toml", "[mark]\nmessage = \"from file\"\nout = \"o\"\n");
+  const Result result = run("--config c.toml mark a.obj --json");
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(nlohmann::json::parse(result.out)["message_hex"], "66726f6d2066696c65");
+}
+
+TEST_F(Cli, MeasuresDistances) {
+  make_sample("a.obj", 3000);
+  run("mark a.obj --out o");
+  const Result result = run("measure a.obj o/a.obj --json");
+  ASSERT_EQ(result.code, 0);
+  const auto json = nlohmann::json::parse(result.out);
+  EXPECT_TRUE(json["same_connectivity"]);
+  EXPECT_GT(json["hausdorff"], 0);
+  EXPECT_LE(json["hausdorff"], json["displacement_max"]);
+  EXPECT_EQ(nlohmann::json::parse(run("measure a.obj a.obj --json").out)["hausdorff"], 0);
+  EXPECT_EQ(run("measure a.obj absent.obj").code, 2);
+}
+
+TEST_F(Cli, SamplesAreTheSameForTheSameSeed) {
+  ASSERT_EQ(run("sample --out s --count 3 --triangles 2000 --seed 5").code, 0);
+  ASSERT_EQ(run("sample --out t --count 3 --triangles 2000 --seed 5 --threads 1").code, 0);
+  ASSERT_EQ(run("sample --out u --count 1 --triangles 2000 --seed 6 --format stl").code, 0);
+  for (const char* name : {"0000-closed.obj", "0001-open.obj", "0002-high-genus.obj"}) {
+    EXPECT_EQ(test::read_all(folder_ / "s" / name), test::read_all(folder_ / "t" / name));
+    EXPECT_GT(fs::file_size(folder_ / "s" / name), 50000U);
+  }
+  EXPECT_TRUE(fs::exists(folder_ / "u/0000-closed.stl"));
+}
+
+TEST_F(Cli, InterruptLeavesWholeFilesAndExits130) {
+  std::string manifest;
+  for (int i = 0; i < 60; ++i) {
+    const std::string name = "in/" + std::to_string(i) + ".obj";
+    make_sample(name, 20000);
+    manifest += "{\"mesh\": \"" + name + "\"}\n";
+  }
+  folder_.write("m.jsonl", manifest);
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    if (chdir(folder_.path().c_str()) != 0) _exit(9);
+    if (freopen("/dev/null", "w", stderr) == nullptr) _exit(9);
+    if (freopen("out.jsonl", "w", stdout) == nullptr) _exit(9);
+    execl(TRIGLYPH_EXECUTABLE, "triglyph", "mark", "m.jsonl", "--out", "o", "--json", "--threads",
+          "2", nullptr);
+    _exit(9);
+  }
+  // as soon as the first file is there, interrupt
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (test::read_all(folder_ / "out.jsonl").empty() &&
+         std::chrono::steady_clock::now() < deadline) {
+    usleep(1000);
+  }
+  kill(child, SIGINT);
+  int status = 0;
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 130);
+  std::size_t marked = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder_ / "o")) {
+    if (!entry.is_regular_file()) continue;
+    ++marked;
+    EXPECT_EQ(entry.path().filename().string().front() == '.', false) << entry.path();
+    EXPECT_EQ(run("extract '" + entry.path().string() + "'").code, 0);
+  }
+  EXPECT_GE(marked, 1U);
+  EXPECT_LT(marked, 60U);
+}
+
+}  // namespace
+}  // namespace triglyph

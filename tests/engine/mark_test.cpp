@@ -1,0 +1,182 @@
+#include "engine/mark.h"
+
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "engine/base/error.h"
+#include "engine/extract.h"
+#include "engine/settle.h"
+#include "tests/support/arenas.h"
+#include "tests/support/attacks.h"
+#include "tests/support/shapes.h"
+
+namespace triglyph {
+namespace {
+
+const Message kMessage{'o', 'w', 'n', 'e', 'r', ' ', '4', '2'};
+
+Vec3 unrounded(const Vec3& p) { return p; }
+
+Marking mark_ball(const MarkOptions& options = {}) {
+  return mark(test::bumpy_ball().surface(), kMessage, Key::trial(), options, test::as_float, 1e-7);
+}
+
+Mesh marked_ball(const MarkOptions& options = {}) {
+  return {mark_ball(options).positions, test::bumpy_ball().mesh.triangles};
+}
+
+Extraction read(const Mesh& mesh, const Key& key = Key::trial(), const MarkOptions& options = {}) {
+  const test::Solid solid(mesh);
+  const WordCode code(key, options.format);
+  return extract(solid.surface(), *make_scheme(options.scheme, code, options.scheme_options), code);
+}
+
+TEST(Mark, MessageComesBackAndEveryCarrierAgrees) {
+  const Marking marking = mark_ball();
+  EXPECT_EQ(marking.status, MarkStatus::Marked);
+  EXPECT_EQ(marking.carriers.size() + marking.units_dropped, marking.units_assigned);
+  const Extraction found = read({marking.positions, test::bumpy_ball().mesh.triangles});
+  EXPECT_EQ(found.message, kMessage);
+  EXPECT_GE(found.agreeing, marking.carriers.size());
+  EXPECT_EQ(found.parts, marking.words.size());
+  EXPECT_GT(found.agreement, 0.8);
+}
+
+TEST(Mark, MessagesOfOneTo256BytesComeBack) {
+  for (const std::size_t bytes : {1, 2, 16, 64, 256}) {
+    Message message(bytes);
+    for (std::size_t i = 0; i < bytes; ++i) message[i] = static_cast<std::uint8_t>(37 * i + bytes);
+    const Marking marking = mark(test::bumpy_ball().surface(), message, Key::trial(), {},
+                                 test::as_float, 1e-7);
+    EXPECT_EQ(read({marking.positions, test::bumpy_ball().mesh.triangles}).message, message);
+  }
+}
+
+TEST(Mark, SurvivesReorderingSimilarityRoundingAndCropping) {
+  const Mesh marked = marked_ball();
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    EXPECT_EQ(read(test::shuffled(marked, seed)).message, kMessage) << seed;
+    EXPECT_EQ(read(test::moved_rigidly_and_scaled(marked, seed)).message, kMessage) << seed;
+    EXPECT_EQ(read(test::cropped_half(marked, seed)).message, kMessage) << seed;
+  }
+  EXPECT_EQ(read(test::with_significant_digits(marked, 6)).message, kMessage);
+  EXPECT_EQ(read(test::with_significant_digits(
+                     test::cropped_half(test::shuffled(marked, 1), 2), 6)).message,
+            kMessage);
+}
+
+TEST(Mark, AnotherKeyAndAnUnmarkedMeshYieldNothing) {
+  const Mesh marked = marked_ball();
+  for (int i = 0; i < 20; ++i) EXPECT_FALSE(read(marked, Key::generate()).message);
+  EXPECT_FALSE(read(test::bumpy_ball().mesh).message);
+}
+
+// 200 unmarked meshes: no false alarm. With a 32-bit tag one is expected in 20 million such runs.
+TEST(Mark, TwoHundredUnmarkedMeshesRaiseNoAlarm) {
+  const SampleShape shapes[] = {SampleShape::Closed, SampleShape::Open, SampleShape::HighGenus};
+  std::size_t markers = 0;
+  for (std::uint64_t i = 0; i < 200; ++i) {
+    const Extraction found = read(make_sample_shape(shapes[i % 3], 1000 + 20 * i, i));
+    EXPECT_FALSE(found.message);
+    markers += found.readings.size();
+  }
+  EXPECT_GT(markers, 200U);  // chance look-alikes there are, so the tag has something to refuse
+}
+
+TEST(Mark, UnitsAreDisjointAndOnlyTheirPointsMove) {
+  const auto& ball = test::bumpy_ball();
+  const Marking marking = mark_ball();
+  std::size_t moved = 0;
+  for (std::size_t i = 0; i < marking.positions.size(); ++i) {
+    moved += marking.positions[i] != ball.mesh.positions[i] ? 1 : 0;
+  }
+  EXPECT_LE(moved, 6 * marking.carriers.size());
+  EXPECT_GT(moved, 3 * marking.carriers.size());
+  EXPECT_TRUE(
+      flipped_triangles(ball.mesh.triangles, ball.mesh.positions, marking.positions).empty());
+}
+
+TEST(Mark, OptimisedMovesLessThanUnoptimised) {
+  MarkOptions plain;
+  plain.layout = LayoutMethod::FirstFit;
+  plain.assign = AssignMethod::Sequential;
+  MarkOptions sum;
+  sum.assign = AssignMethod::Sum;
+  const Marking unoptimised = mark_ball(plain);
+  const Marking bottleneck = mark_ball();
+  const Marking least_sum = mark_ball(sum);
+  EXPECT_LT(bottleneck.cost_max, 0.5 * unoptimised.cost_max);
+  EXPECT_LE(bottleneck.cost_max, least_sum.cost_max);
+  EXPECT_LE(least_sum.cost_sum, bottleneck.cost_sum);
+  EXPECT_GT(bottleneck.units_valid, unoptimised.units_valid);
+  EXPECT_LE(bottleneck.units_valid, bottleneck.units_bound);
+}
+
+TEST(Mark, RedundancyLeavesTheDearestUnitsOut) {
+  MarkOptions few;
+  few.redundancy = 4;
+  MarkOptions all;
+  all.redundancy = 0;
+  const Marking sparse = mark_ball(few);
+  const Marking full = mark_ball(all);
+  EXPECT_EQ(sparse.units_assigned, 4 * sparse.words.size());
+  EXPECT_GT(full.units_assigned, full.units_valid * 9 / 10);
+  EXPECT_LT(sparse.cost_max, full.cost_max);
+}
+
+TEST(Mark, FillGivesEveryUnitAPartOfItsOwn) {
+  MarkOptions options;
+  options.scheme_options.step = kFillStep;
+  const auto& ball = test::bumpy_ball();
+  const Marking marking =
+      mark(ball.surface(), {}, Key::trial(), options, test::as_float, 1e-7);
+  EXPECT_EQ(marking.words.size(), marking.units_valid);
+  EXPECT_GE(marking.carriers.size(), marking.units_valid * 95 / 100);
+  std::set<std::uint32_t> words;
+  for (const Carrier& carrier : marking.carriers) words.insert(carrier.word);
+  EXPECT_EQ(words.size(), marking.carriers.size());
+}
+
+TEST(Mark, TooSmallAndTooCoarseAreSaid) {
+  const test::Solid grid(test::flat_grid(3, 3));
+  EXPECT_EQ(mark(grid.surface(), kMessage, Key::trial(), {}, unrounded, 0).status,
+            MarkStatus::TooSmall);
+  EXPECT_EQ(mark(grid.surface(), {}, Key::trial(), {}, unrounded, 0).status,
+            MarkStatus::TooSmall);
+  const double step = 0.01;  // about a third of an edge
+  const auto coarse = [&](const Vec3& p) {
+    return Vec3(std::round(p[0] / step), std::round(p[1] / step), std::round(p[2] / step)) * step;
+  };
+  EXPECT_EQ(mark(test::bumpy_ball().surface(), kMessage, Key::trial(), {}, coarse, step).status,
+            MarkStatus::TooCoarse);
+}
+
+TEST(Mark, RefusesUnknownSchemesAndCellWidths) {
+  MarkOptions options;
+  options.scheme = "xyz";
+  EXPECT_THROW((void)mark_ball(options), Error);
+  options = {};
+  options.scheme_options.step = 0;
+  EXPECT_THROW((void)mark_ball(options), Error);
+}
+
+TEST(Mark, DoesNotDependOnThreads) {
+  test::expect_same_for_any_threads([] {
+    const Marking marking = mark_ball();
+    return std::make_tuple(marking.positions, marking.carriers, marking.cost_sum);
+  });
+}
+
+TEST(Settle, TakesBackWhatFlipsAFace) {
+  const Mesh sheet = test::flat_grid(4, 4);
+  std::vector<Vec3> after = sheet.positions;
+  after[12] += Vec3(1.5, 0.2, 0);
+  EXPECT_FALSE(flipped_triangles(sheet.triangles, sheet.positions, after).empty());
+  after = sheet.positions;
+  after[12] += Vec3(0.2, 0.1, 0);
+  EXPECT_TRUE(flipped_triangles(sheet.triangles, sheet.positions, after).empty());
+}
+
+}  // namespace
+}  // namespace triglyph

@@ -1,0 +1,136 @@
+#include "manifests/manifest.h"
+
+#include <gtest/gtest.h>
+
+#include "engine/base/error.h"
+#include "tests/support/temp_folder.h"
+
+namespace triglyph {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<Job> jobs_of(JobSource& source) {
+  std::vector<Job> jobs;
+  while (auto job = source.next()) jobs.push_back(std::move(*job));
+  return jobs;
+}
+
+std::vector<Job> jobs_of(const fs::path& manifest, const fs::path& out = "") {
+  ManifestReader reader(manifest, {}, out);
+  return jobs_of(reader);
+}
+
+std::string error_of(const fs::path& manifest, const fs::path& out = "") {
+  try {
+    jobs_of(manifest, out);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Manifest, LinesOverrideDefaultsOverrideOptions) {
+  const test::TempFolder folder;
+  const auto manifest = folder.write("m.jsonl",
+      "{\"triglyph\": 1, \"defaults\": {\"message\": \"all\", \"redundancy\": 7, \"out\": \"o/\"}}\n"
+      "\n"
+      "{\"mesh\": \"a/b.obj\"}\r\n"
+      "{\"mesh\": \"c.ply\", \"message_hex\": \"00ff\", \"out\": \"x.ply\", \"step\": 0.05,"
+      " \"layout\": \"first-fit\", \"assign\": \"sum\", \"cost\": \"rms\", \"scheme\": \"tsq\","
+      " \"marker_bits\": 4, \"subscript_bits\": 9, \"part_bits\": 16}\n"
+      "{\"mesh\": \"d.stl\", \"fill\": true}");
+  const auto jobs = jobs_of(manifest);
+  ASSERT_EQ(jobs.size(), 3U);
+  EXPECT_EQ(jobs[0].mesh, folder / "a/b.obj");
+  EXPECT_EQ(jobs[0].out, folder / "o/a/b.obj");
+  EXPECT_EQ(jobs[0].settings.message, (Message{'a', 'l', 'l'}));
+  EXPECT_EQ(jobs[0].settings.options.redundancy, 7U);
+  EXPECT_EQ(jobs[1].out, folder / "x.ply");
+  EXPECT_EQ(jobs[1].settings.message, (Message{0, 255}));
+  EXPECT_EQ(jobs[1].settings.resolved().scheme_options.step, 0.05);
+  EXPECT_EQ(jobs[1].settings.options.layout, LayoutMethod::FirstFit);
+  EXPECT_EQ(jobs[1].settings.options.assign, AssignMethod::Sum);
+  EXPECT_EQ(jobs[1].settings.options.scheme_options.cost, CostFunction::Rms);
+  EXPECT_EQ(jobs[1].settings.options.format, (WordFormat{4, 9, 16}));
+  EXPECT_TRUE(jobs[2].settings.fill);
+  EXPECT_EQ(jobs[2].settings.resolved().scheme_options.step, kFillStep);
+  EXPECT_EQ(jobs[2].index, 2U);
+}
+
+TEST(Manifest, GlobsAreSortedAndKeepTheirFolders) {
+  const test::TempFolder folder;
+  for (const char* name : {"in/b.obj", "in/a.obj", "in/deep/er/c.obj", "in/d.ply", "in/.h.obj"}) {
+    folder.write(name, "");
+  }
+  const auto names_of = [&](const std::string& pattern) {
+    std::string names;
+    const auto manifest = folder.write("m.jsonl", "{\"mesh\": \"" + pattern + "\"}");
+    for (const Job& job : jobs_of(manifest, folder / "out")) {
+      names += job.out.lexically_relative(folder / "out").string() + " ";
+    }
+    return names;
+  };
+  EXPECT_EQ(names_of("in/*.obj"), "a.obj b.obj ");
+  EXPECT_EQ(names_of("in/**/*.obj"), "a.obj b.obj deep/er/c.obj ");
+  EXPECT_EQ(names_of("in/**/e[a-z]/?.obj"), "deep/er/c.obj ");
+  EXPECT_EQ(names_of("in/d.ply"), "in/d.ply ");
+}
+
+TEST(Manifest, ErrorsNameTheLine) {
+  const test::TempFolder folder;
+  const auto message = [&](const std::string& text) {
+    return error_of(folder.write("m.jsonl", text), folder / "o");
+  };
+  const std::string good = "{\"mesh\": \"a.obj\"}\n";
+  EXPECT_NE(message(good + "{\"mesh\": ").find("m.jsonl: line 2: "), std::string::npos);
+  EXPECT_NE(message(good + "[1]").find("line 2"), std::string::npos);
+  EXPECT_NE(message(good + "{\"out\": \"x\"}").find("\"mesh\" is missing"), std::string::npos);
+  EXPECT_NE(message("{\"mesh\": \"a.obj\", \"mesage\": \"x\"}").find("unknown key \"mesage\""),
+            std::string::npos);
+  EXPECT_NE(message("{\"mesh\": 5}").find("line 1"), std::string::npos);
+  EXPECT_NE(message("{\"mesh\": \"*.obj\"}").find("matches no file"), std::string::npos);
+  EXPECT_NE(message("{\"mesh\": \"a.obj\", \"message_hex\": \"xyz\"}").find("line 1"),
+            std::string::npos);
+  EXPECT_NE(message("{\"triglyph\": 2}").find("line 1"), std::string::npos);
+  EXPECT_NE(message(good + "{\"triglyph\": 1}").find("line 2"), std::string::npos);
+  EXPECT_NE(error_of(folder.write("m.jsonl", good)).find("no --out"), std::string::npos);
+  EXPECT_NE(error_of(folder / "absent.jsonl").find("cannot be read"), std::string::npos);
+}
+
+TEST(CheckPlan, RefusesOutputsThatWouldDestroyAnything) {
+  const test::TempFolder folder;
+  folder.write("a.obj", "");
+  folder.write("b.obj", "");
+  fs::create_symlink(folder / "b.obj", folder / "link.obj");
+  fs::create_directory_symlink(folder.path(), folder / "same");
+  const auto plan = [&](const std::string& text) -> std::string {
+    try {
+      ManifestReader reader(folder.write("m.jsonl", text), {}, folder / "o");
+      check_plan(reader);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(plan("{\"mesh\": \"a.obj\"}\n{\"mesh\": \"b.obj\"}"), "");
+  EXPECT_NE(plan("{\"mesh\": \"a.obj\", \"out\": \"a.obj\"}"), "");
+  EXPECT_NE(plan("{\"mesh\": \"a.obj\", \"out\": \"./same/../x/../b.obj\"}\n{\"mesh\": \"b.obj\"}"),
+            "");
+  EXPECT_NE(plan("{\"mesh\": \"a.obj\", \"out\": \"same/a.obj\"}"), "");
+  EXPECT_NE(plan("{\"mesh\": \"a.obj\", \"out\": \"b.obj\"}\n{\"mesh\": \"link.obj\"}"), "");
+  EXPECT_NE(plan("{\"mesh\": \"a.obj\", \"out\": \"c.obj\"}\n"
+                 "{\"mesh\": \"b.obj\", \"out\": \"same/c.obj\"}"),
+            "");
+}
+
+TEST(MeshList, PutsFilesIntoOneFolder) {
+  MeshList list({"x/a.obj", "b.stl"}, {}, "out");
+  const auto jobs = jobs_of(list);
+  ASSERT_EQ(jobs.size(), 2U);
+  EXPECT_EQ(jobs[0].out, "out/a.obj");
+  EXPECT_EQ(jobs[1].out, "out/b.stl");
+}
+
+}  // namespace
+}  // namespace triglyph

@@ -1,0 +1,209 @@
+#include "manifests/run.h"
+
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "engine/base/output_file.h"
+#include "engine/mesh/export_mesh.h"
+#include "manifests/pipeline.h"
+#include "tests/support/attacks.h"
+#include "tests/support/shapes.h"
+#include "tests/support/temp_folder.h"
+
+namespace triglyph {
+namespace {
+
+namespace fs = std::filesystem;
+
+void save(const Mesh& mesh, const fs::path& path, FileFormat format) {
+  ExportFormat options;
+  options.format = format;
+  OutputFile file(path);
+  file.write(export_mesh(mesh, options));
+  file.commit();
+}
+
+// Good and bad meshes of all formats, and a manifest over them.
+class Collection {
+ public:
+  Collection() {
+    const SampleShape shapes[] = {SampleShape::Closed, SampleShape::Open, SampleShape::HighGenus};
+    const FileFormat formats[] = {FileFormat::Obj,      FileFormat::Off,    FileFormat::PlyAscii,
+                                  FileFormat::PlyBig,   FileFormat::StlAscii,
+                                  FileFormat::PlyLittle, FileFormat::StlBinary};
+    const char* endings[] = {"obj", "off", "ply", "ply", "stl", "ply", "stl"};
+    std::string manifest = "{\"triglyph\": 1, \"defaults\": {\"message\": \"run test\"}}\n";
+    for (std::size_t i = 0; i < 7; ++i) {
+      const std::string name = "in/" + std::to_string(i) + "." + endings[i];
+      save(make_sample_shape(shapes[i % 3], 2000 + 500 * i, i), folder_ / name, formats[i]);
+      manifest += "{\"mesh\": \"" + name + "\"}\n";
+    }
+    folder_.write("in/bad.obj", "v 0 0 0\nv 1 x 0\n");
+    folder_.write("in/small.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    manifest += "{\"mesh\": \"in/bad.obj\"}\n{\"mesh\": \"in/small.off\"}\n";
+    manifest += "{\"mesh\": \"in/absent.obj\"}\n{\"mesh\": \"in/0.obj\", \"out\": \"o/again.obj\"}\n";
+    manifest_ = folder_.write("m.jsonl", manifest);
+  }
+
+  [[nodiscard]] std::vector<Record> run(const RunOptions& options, const fs::path& out) const {
+    ManifestReader jobs(manifest_, {}, out);
+    std::vector<Record> records;
+    const std::atomic<bool> stop{false};
+    with_threads(options.threads, [&] {
+      run_jobs(jobs, Key::trial(), options,
+               [&](const Record& record) { records.push_back(record); }, stop);
+    });
+    return records;
+  }
+
+  [[nodiscard]] const test::TempFolder& folder() const { return folder_; }
+  [[nodiscard]] const fs::path& manifest() const { return manifest_; }
+
+ private:
+  test::TempFolder folder_;
+  fs::path manifest_;
+};
+
+TEST(RunJobs, GivesEveryMeshARecordInOrder) {
+  const Collection collection;
+  const auto records = collection.run({}, collection.folder() / "out");
+  ASSERT_EQ(records.size(), 11U);
+  for (std::size_t i = 0; i < records.size(); ++i) EXPECT_EQ(records[i].job.index, i);
+  for (const std::size_t i : {0, 1, 2, 3, 4, 5, 6, 10}) {
+    EXPECT_EQ(records[i].status, Status::Marked) << records[i].error;
+    EXPECT_GT(records[i].units_embedded, 0U);
+    EXPECT_GT(records[i].hausdorff, 0);
+    EXPECT_TRUE(fs::exists(records[i].job.out));
+    const FileExtraction found = extract_file(records[i].job.out, Key::trial(), {});
+    EXPECT_EQ(found.extraction.message, (Message{'r', 'u', 'n', ' ', 't', 'e', 's', 't'}));
+  }
+  EXPECT_EQ(records[7].status, Status::Malformed);
+  EXPECT_NE(records[7].error.find("line 2"), std::string::npos);
+  EXPECT_EQ(records[8].status, Status::TooSmall);
+  EXPECT_EQ(records[9].status, Status::Unreadable);
+  for (const std::size_t i : {7, 8, 9}) EXPECT_FALSE(fs::exists(records[i].job.out));
+  for (const auto& entry : fs::recursive_directory_iterator(collection.folder() / "out")) {
+    EXPECT_EQ(entry.path().filename().string().find(".part"), std::string::npos);
+  }
+}
+
+TEST(RunJobs, BytesAndRecordsAreTheSameForAnyThreadsAndMemory) {
+  const Collection collection;
+  const auto snapshot = [&](const RunOptions& options) {
+    const fs::path out = collection.folder() / "out";
+    fs::remove_all(out);
+    std::vector<std::string> all;
+    for (const Record& record : collection.run(options, out)) {
+      auto json = to_json(record, 0);
+      json.erase("run");
+      all.push_back(json.dump());
+      all.push_back(test::read_all(record.job.out));
+    }
+    return all;
+  };
+  const auto expected = snapshot({});
+  for (const int threads : {1, 2, 8}) {
+    RunOptions options;
+    options.threads = threads;
+    options.memory_bytes = threads == 8 ? 1 : std::uint64_t{1} << 30;
+    EXPECT_EQ(snapshot(options), expected) << threads << " threads";
+  }
+}
+
+TEST(RunJobs, StopsAtAnInterruptWithWholeFilesOnly) {
+  const Collection collection;
+  ManifestReader jobs(collection.manifest(), {}, collection.folder() / "out");
+  std::atomic<bool> stop{false};
+  std::size_t count = 0;
+  RunOptions options;
+  options.memory_bytes = 1;  // one mesh at a time
+  run_jobs(jobs, Key::trial(), options,
+           [&](const Record& record) {
+             if (record.status == Status::Marked) {
+               (void)extract_file(record.job.out, Key::trial(), {});
+             }
+             stop = ++count >= 2;
+           },
+           stop);
+  std::size_t files = 0;
+  for (const auto& entry : fs::directory_iterator(collection.folder() / "out/in")) {
+    EXPECT_EQ(entry.path().filename().string().front() == '.', false);
+    ++files;
+  }
+  EXPECT_LT(files, 7U);
+}
+
+TEST(Records, ComeBackFromTheirLine) {
+  const Collection collection;
+  const auto records = collection.run({}, collection.folder() / "out");
+  const RecordedMark mark = parse_record(to_json(records[0], 5).dump());
+  EXPECT_EQ(mark.out, records[0].job.out);
+  EXPECT_EQ(mark.status, Status::Marked);
+  EXPECT_EQ(mark.settings.message, records[0].job.settings.message);
+  EXPECT_EQ(mark.format, records[0].format);
+  EXPECT_EQ(mark.units_embedded, records[0].units_embedded);
+  EXPECT_THROW((void)parse_record("{}"), Error);
+  EXPECT_THROW((void)parse_record("not json"), Error);
+  EXPECT_THROW((void)parse_record("{\"schema\": 1}"), Error);
+}
+
+TEST(VerifyFile, TellsIntactAlteredLostAndMissingApart) {
+  const Collection collection;
+  const auto records = collection.run({}, collection.folder() / "out");
+  const RecordedMark mark = parse_record(to_json(records[0], 0).dump());
+  EXPECT_EQ(verify_file(mark, Key::trial()).verdict, FileVerdict::Intact);
+  EXPECT_EQ(verify_file(mark, Key::generate()).verdict, FileVerdict::Lost);
+
+  const std::string bytes = test::read_all(mark.out);
+  std::ofstream(mark.out, std::ios::app) << "# a comment\n";
+  EXPECT_EQ(verify_file(mark, Key::trial()).verdict, FileVerdict::Altered);
+  std::ofstream(mark.out) << bytes.substr(0, bytes.size() / 3) << "\nv 1 2\n";
+  EXPECT_EQ(verify_file(mark, Key::trial()).verdict, FileVerdict::Damaged);
+  fs::copy_file(records[0].job.mesh, mark.out, fs::copy_options::overwrite_existing);
+  EXPECT_EQ(verify_file(mark, Key::trial()).verdict, FileVerdict::Lost);
+  fs::remove(mark.out);
+  EXPECT_EQ(verify_file(mark, Key::trial()).verdict, FileVerdict::Missing);
+  const RecordedMark bad = parse_record(to_json(records[7], 0).dump());
+  EXPECT_EQ(verify_file(bad, Key::trial()).verdict, FileVerdict::NotMarked);
+}
+
+TEST(VerifyFile, KnowsAFilledMesh) {
+  const Collection collection;
+  JobSettings settings;
+  settings.fill = true;
+  MeshList jobs({collection.folder() / "in/0.obj"}, settings, collection.folder() / "fill");
+  std::vector<Record> records;
+  const std::atomic<bool> stop{false};
+  run_jobs(jobs, Key::trial(), {}, [&](const Record& record) { records.push_back(record); }, stop);
+  ASSERT_EQ(records.size(), 1U);
+  ASSERT_EQ(records[0].status, Status::Marked) << records[0].error;
+  EXPECT_EQ(records[0].parts, records[0].units_valid);
+  const RecordedMark mark = parse_record(to_json(records[0], 0).dump());
+  const Verification found = verify_file(mark, Key::trial());
+  EXPECT_EQ(found.verdict, FileVerdict::Intact);
+  EXPECT_GE(found.units_found, records[0].units_embedded);
+}
+
+// The whole way through every pair of formats that a marked mesh may be converted to.
+TEST(Formats, MessageSurvivesConversionFromAnyToAny) {
+  const Collection collection;
+  const auto records = collection.run({}, collection.folder() / "out");
+  const FileFormat chain[] = {FileFormat::PlyLittle, FileFormat::StlBinary, FileFormat::Off,
+                              FileFormat::StlAscii,  FileFormat::PlyBig,    FileFormat::Obj};
+  const char* endings[] = {"ply", "stl", "off", "stl", "ply", "obj"};
+  for (std::size_t i = 0; i < 7; ++i) {
+    fs::path path = records[i].job.out;
+    for (std::size_t k = 0; k < 6; ++k) {
+      const Mesh mesh = MeshFile::open(path).mesh();
+      path = collection.folder() / ("c" + std::to_string(k) + "." + endings[k]);
+      save(test::with_significant_digits(mesh, 6), path, chain[k]);
+      EXPECT_EQ(extract_file(path, Key::trial(), {}).extraction.message,
+                records[i].job.settings.message)
+          << i << " -> " << path;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace triglyph

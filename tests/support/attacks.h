@@ -1,0 +1,120 @@
+// What happens to meshes on their way: each function returns a changed copy, deterministic by seed.
+#pragma once
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <numeric>
+#include <vector>
+
+#include "engine/base/random.h"
+#include "engine/mesh/mesh.h"
+
+namespace triglyph::test {
+
+inline std::vector<std::uint32_t> random_order(std::size_t size, std::uint64_t seed) {
+  std::vector<std::uint32_t> order(size);
+  std::iota(order.begin(), order.end(), 0U);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return random_bits(seed, 0, a) < random_bits(seed, 0, b);
+  });
+  return order;
+}
+
+// New order of vertices and faces, and every face starts at another corner.
+inline Mesh shuffled(const Mesh& mesh, std::uint64_t seed) {
+  const auto points = random_order(mesh.positions.size(), seed);
+  const auto faces = random_order(mesh.triangles.size(), seed + 1);
+  std::vector<std::uint32_t> place(points.size());
+  Mesh result;
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    place[points[i]] = i;
+    result.positions.push_back(mesh.positions[points[i]]);
+  }
+  for (const std::uint32_t face : faces) {
+    const Triangle& old = mesh.triangles[face];
+    const auto turn = static_cast<std::size_t>(random_bits(seed, 2, face) % 3);
+    result.triangles.push_back(
+        {place[old[turn]], place[old[(turn + 1) % 3]], place[old[(turn + 2) % 3]]});
+  }
+  return result;
+}
+
+// Random rotation (uniform quaternion), scale from 1e-3 to 1e3, shift of up to ten mesh sizes.
+inline Mesh moved_rigidly_and_scaled(const Mesh& mesh, std::uint64_t seed) {
+  double q[4];
+  double norm = 0;
+  for (int i = 0; i < 4; ++i) {
+    q[i] = random_unit(seed, 0, static_cast<std::uint64_t>(i)) +
+           random_unit(seed, 1, static_cast<std::uint64_t>(i)) - 1;
+    norm += q[i] * q[i];
+  }
+  norm = std::sqrt(norm);
+  const double w = q[0] / norm, x = q[1] / norm, y = q[2] / norm, z = q[3] / norm;
+  const double scale = std::pow(10.0, 6 * random_unit(seed, 2, 0) - 3);
+  const Vec3 rows[3] = {Vec3(1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)),
+                        Vec3(2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)),
+                        Vec3(2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y))};
+  Mesh result = mesh;
+  for (Vec3& p : result.positions) {
+    p = Vec3(dot(rows[0], p), dot(rows[1], p), dot(rows[2], p)) * scale +
+        Vec3(3, -5, 7) * scale * random_unit(seed, 3, 0);
+  }
+  return result;
+}
+
+// Keeps the faces whose centroid lies on one side of a plane with random direction that halves them.
+inline Mesh cropped_half(const Mesh& mesh, std::uint64_t seed) {
+  const Vec3 normal(random_unit(seed, 0, 0) - 0.5, random_unit(seed, 0, 1) - 0.5,
+                    random_unit(seed, 0, 2) - 0.5);
+  std::vector<double> heights;
+  for (const Triangle& t : mesh.triangles) {
+    heights.push_back(
+        dot(normal, mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]]));
+  }
+  std::vector<double> sorted = heights;
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<long>(sorted.size() / 2),
+                   sorted.end());
+  const double median = sorted[sorted.size() / 2];
+  Mesh result;
+  std::vector<std::uint32_t> place(mesh.positions.size(), 0xffffffff);
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+    if (heights[f] >= median) continue;
+    Triangle triangle{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      std::uint32_t& id = place[mesh.triangles[f][i]];
+      if (id == 0xffffffff) {
+        id = static_cast<std::uint32_t>(result.positions.size());
+        result.positions.push_back(mesh.positions[mesh.triangles[f][i]]);
+      }
+      triangle[i] = id;
+    }
+    result.triangles.push_back(triangle);
+  }
+  return result;
+}
+
+// Coordinates as "%.{digits}g" would write them.
+inline Vec3 with_significant_digits(const Vec3& p, int digits) {
+  Vec3 result;
+  for (std::size_t i = 0; i < 3; ++i) {
+    char text[64];
+    std::snprintf(text, sizeof text, "%.*g", digits, p[i]);
+    result[i] = std::strtod(text, nullptr);
+  }
+  return result;
+}
+
+inline Mesh with_significant_digits(const Mesh& mesh, int digits) {
+  Mesh result = mesh;
+  for (Vec3& p : result.positions) p = with_significant_digits(p, digits);
+  return result;
+}
+
+inline Vec3 as_float(const Vec3& p) {
+  return Vec3(static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]));
+}
+
+}  // namespace triglyph::test
