@@ -20,6 +20,7 @@
 
 #include "engine/assignment/assignment.h"
 #include "engine/assignment/candidates.h"
+#include "engine/assignment/matching.h"
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
 #include "engine/base/random.h"
@@ -29,6 +30,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t kNobody = 0xffffffff;
+constexpr std::size_t kManyTies = 2;  // best units a copy; distinct costs have hardly more than one
 constexpr std::uint32_t kBidsPerWord = 6;  // on average; more bids save few searches
 
 // Invariants: value <= cost + price over all pairs of the word that are allowed, with equality for
@@ -70,6 +72,8 @@ class Transport {
   void set_first_prices(const TransportProblem& problem);
   void renew_list(std::uint32_t word);
   void give(std::uint32_t unit, std::uint32_t word);
+  [[nodiscard]] bool has_many_ties() const;
+  void match_ties();
   void bid_in_turns();
   void bid(std::uint32_t word, std::vector<std::uint32_t>& losers);
   void serve(std::uint32_t source);
@@ -368,7 +372,41 @@ void Transport::shift_along_path(std::uint32_t source) {
   --words_[source].deficit;
 }
 
+// Whether the words like far more units best than they can use.
+bool Transport::has_many_ties() const {
+  std::size_t copies = 0;
+  std::size_t ties = 0;
+  for (const Word& word : words_) {
+    copies += word.deficit;
+    for (const Candidate& pair : word.list.pairs) {
+      ties += pair.cost + prices_[pair.unit] <= word.value ? 1 : 0;
+    }
+  }
+  return ties > kManyTies * copies;
+}
+
+// Gives each word as many of the units it likes best as can be done for all words together. Taken
+// one by one, words would take the units that suit everybody and leave those that suit only them.
+void Transport::match_ties() {
+  PairGraph graph(static_cast<std::uint32_t>(owner_.size()),
+                  static_cast<std::uint32_t>(words_.size()));
+  std::vector<std::uint32_t> copies;
+  for (const Word& word : words_) copies.push_back(word.deficit);
+  parallel_for(words_.size(), [&](std::size_t k) {
+    const Word& word = words_[k];
+    graph.set_row(static_cast<std::uint32_t>(k), [&](std::size_t unit) {
+      return (word.column[unit] <= limit_) & (word.column[unit] + prices_[unit] <= word.value);
+    });
+  });
+  const Matching matching = grow_maximum_matching(graph, empty_matching(graph.units(), copies));
+  for (std::uint32_t unit = 0; unit < graph.units(); ++unit) {
+    if (matching.word_of_unit[unit] != kNoWord) give(unit, matching.word_of_unit[unit]);
+  }
+  for (std::size_t k = 0; k < words_.size(); ++k) words_[k].deficit = matching.unserved[k];
+}
+
 void Transport::solve() {
+  if (has_many_ties()) match_ties();
   bid_in_turns();
   for (std::uint32_t word = 0; word < words_.size(); ++word) {
     while (words_[word].deficit > 0) serve(word);
