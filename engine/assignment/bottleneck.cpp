@@ -97,7 +97,7 @@ float bound_by_served_words(const CostMatrix& costs, std::span<const std::uint32
 }
 
 float find_lower_bound(const CostMatrix& costs, std::span<const std::uint32_t> demand,
-                       const ThresholdGraph& feasible, const Matching& largest) {
+                       const PairGraph& feasible, const Matching& largest) {
   const bool all_served = std::all_of(largest.unserved.begin(), largest.unserved.end(),
                                       [](std::uint32_t copies) { return copies == 0; });
   if (all_served) {
@@ -133,7 +133,7 @@ Threshold narrow(const CostMatrix& costs, Threshold lower, float upper, std::uin
   while (wanted - lower.matching.matched > kFewMissing && high - low > 1) {
     const std::uint32_t middle = low + (high - low) / 2;
     const auto value = std::bit_cast<float>(middle);
-    Matching matching = grow_maximum_matching(ThresholdGraph(costs, value), lower.matching);
+    Matching matching = grow_maximum_matching(find_pairs_within(costs, value), lower.matching);
     if (matching.matched == wanted) {
       high = std::bit_cast<std::uint32_t>(find_maximum(costs, matching));
     } else {
@@ -220,16 +220,16 @@ class Forest {
 
 Assignment assign_bottleneck(const CostMatrix& costs, std::span<const std::uint32_t> demand) {
   check_costs(costs, demand);
-  const ThresholdGraph feasible(costs, kAllFinite);
+  const PairGraph feasible = find_pairs_within(costs, kAllFinite);
   const Matching largest = grow_maximum_matching(feasible, empty_matching(costs.units, demand));
   Threshold threshold{find_lower_bound(costs, demand, feasible, largest), {}};
-  const ThresholdGraph at_bound(costs, threshold.value);
+  const PairGraph at_bound = find_pairs_within(costs, threshold.value);
   threshold.matching = grow_maximum_matching(at_bound, empty_matching(costs.units, demand));
   if (threshold.matching.matched < largest.matched) {
     threshold = narrow(costs, std::move(threshold), find_maximum(costs, largest), largest.matched);
     while (threshold.matching.matched < largest.matched) Forest(costs, threshold).augment();
   }
-  const ThresholdGraph graph(costs, threshold.value);
+  const PairGraph graph = find_pairs_within(costs, threshold.value);
   return weigh_assignment(costs,
                           minimise_sum(costs, demand, threshold.value, graph, threshold.matching));
 }

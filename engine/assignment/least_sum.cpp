@@ -45,7 +45,7 @@ void check_costs(const CostMatrix& costs, std::span<const std::uint32_t> demand)
 
 std::vector<std::uint32_t> minimise_sum(const CostMatrix& costs,
                                         std::span<const std::uint32_t> demand, float limit,
-                                        const ThresholdGraph& graph, const Matching& maximum) {
+                                        const PairGraph& graph, const Matching& maximum) {
   std::vector<std::uint8_t> all_units(costs.units, 1);
   if (maximum.matched == count_copies(demand)) {
     return solve_transport({costs, demand, all_units, limit});
@@ -72,7 +72,7 @@ std::vector<std::uint32_t> minimise_sum(const CostMatrix& costs,
 Assignment assign_least_sum(const CostMatrix& costs, std::span<const std::uint32_t> demand) {
   check_costs(costs, demand);
   constexpr float kAllFinite = std::numeric_limits<float>::max();
-  const ThresholdGraph graph(costs, kAllFinite);
+  const PairGraph graph = find_pairs_within(costs, kAllFinite);
   const Matching maximum = grow_maximum_matching(graph, empty_matching(costs.units, demand));
   return weigh_assignment(costs, minimise_sum(costs, demand, kAllFinite, graph, maximum));
 }

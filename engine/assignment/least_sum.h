@@ -15,7 +15,7 @@ namespace triglyph {
 // the pairs with cost <= limit, `maximum` is a maximum matching of it, limit is finite.
 [[nodiscard]] std::vector<std::uint32_t> minimise_sum(const CostMatrix& costs,
                                                       std::span<const std::uint32_t> demand,
-                                                      float limit, const ThresholdGraph& graph,
+                                                      float limit, const PairGraph& graph,
                                                       const Matching& maximum);
 
 // Throws std::logic_error where the sizes do not fit or a cost is negative or NaN.

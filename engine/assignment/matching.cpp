@@ -30,7 +30,7 @@ struct Layers {
   std::uint32_t last_layer = kUnreached;  // the nearest that sees a free unit
 };
 
-Layers find_layers(const ThresholdGraph& graph, const Matching& matching,
+Layers find_layers(const PairGraph& graph, const Matching& matching,
                    std::vector<std::uint64_t>& units_left, bool stop_at_free_unit) {
   Layers layers{std::vector<std::uint32_t>(graph.words(), kUnreached)};
   std::vector<std::uint32_t> queue;
@@ -66,7 +66,7 @@ Layers find_layers(const ThresholdGraph& graph, const Matching& matching,
 // phase and each word's row is walked once a phase, wherever the walk was left off.
 class PathFinder {
  public:
-  PathFinder(const ThresholdGraph& graph, const Layers& layers, Matching& matching)
+  PathFinder(const PairGraph& graph, const Layers& layers, Matching& matching)
       : graph_(graph),
         layers_(layers),
         matching_(matching),
@@ -119,7 +119,7 @@ class PathFinder {
     return kUnreached;
   }
 
-  const ThresholdGraph& graph_;
+  const PairGraph& graph_;
   const Layers& layers_;
   Matching& matching_;
   std::vector<std::uint64_t> untried_;
@@ -128,7 +128,7 @@ class PathFinder {
 };
 
 // Gives every word free units while there are any; Hopcroft and Karp's phases do the rest.
-void match_greedily(const ThresholdGraph& graph, Matching& matching) {
+void match_greedily(const PairGraph& graph, Matching& matching) {
   std::vector<std::uint64_t> free = all_ones(graph.units());
   for (std::uint32_t unit = 0; unit < graph.units(); ++unit) {
     if (matching.word_of_unit[unit] != kNoWord) free[unit / 64] &= ~(std::uint64_t{1} << unit % 64);
@@ -150,31 +150,22 @@ void match_greedily(const ThresholdGraph& graph, Matching& matching) {
 
 }  // namespace
 
-ThresholdGraph::ThresholdGraph(const CostMatrix& costs, float limit)
-    : units_(costs.units),
-      words_(costs.words),
-      stride_((static_cast<std::size_t>(costs.units) + 63) / 64),
-      bits_(stride_ * costs.words) {
-  limit = std::min(limit, std::numeric_limits<float>::max());
-  parallel_for(words_, [&](std::size_t word) {
-    const auto column = costs.column(static_cast<std::uint32_t>(word));
-    std::uint64_t* row = bits_.data() + word * stride_;
-    for (std::size_t begin = 0; begin < column.size(); begin += 64) {
-      const std::size_t count = std::min<std::size_t>(64, column.size() - begin);
-      std::uint64_t bits = 0;
-      for (std::size_t k = 0; k < count; ++k) {
-        bits |= static_cast<std::uint64_t>(column[begin + k] <= limit) << k;
-      }
-      row[begin / 64] = bits;
-    }
+PairGraph find_pairs_within(const CostMatrix& costs, float limit) {
+  PairGraph graph(costs.units, costs.words);
+  const float finite_limit = std::min(limit, std::numeric_limits<float>::max());
+  parallel_for(costs.words, [&](std::size_t k) {
+    const auto word = static_cast<std::uint32_t>(k);
+    const float* column = costs.column(word).data();
+    graph.set_row(word, [&](std::size_t unit) { return column[unit] <= finite_limit; });
   });
+  return graph;
 }
 
 Matching empty_matching(std::uint32_t units, std::span<const std::uint32_t> demand) {
   return {std::vector<std::uint32_t>(units, kNoWord), {demand.begin(), demand.end()}, 0};
 }
 
-Matching grow_maximum_matching(const ThresholdGraph& graph, Matching start) {
+Matching grow_maximum_matching(const PairGraph& graph, Matching start) {
   Matching matching = std::move(start);
   match_greedily(graph, matching);
   while (matching.matched < graph.units()) {
@@ -189,7 +180,7 @@ Matching grow_maximum_matching(const ThresholdGraph& graph, Matching start) {
   return matching;
 }
 
-Scarcity find_scarcity(const ThresholdGraph& graph, const Matching& maximum) {
+Scarcity find_scarcity(const PairGraph& graph, const Matching& maximum) {
   std::vector<std::uint64_t> units_left = all_ones(graph.units());
   const Layers layers = find_layers(graph, maximum, units_left, false);
   Scarcity scarcity{std::vector<std::uint8_t>(graph.words()),

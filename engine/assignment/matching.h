@@ -1,6 +1,8 @@
 // Matchings over the pairs whose cost is at most a limit, without regard to what they cost.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -9,18 +11,36 @@
 
 namespace triglyph {
 
-// The finite pairs with cost <= limit, one bit each: a sweep over the candidates of a word handles
-// 64 units at a time, and the whole graph takes 1/32 of the matrix.
-class ThresholdGraph {
+// A set of pairs, one bit each: a sweep over the units of a word handles 64 at a time, and all of
+// it takes 1/32 of the matrix.
+class PairGraph {
  public:
-  // O(units * words), in parallel.
-  ThresholdGraph(const CostMatrix& costs, float limit);
+  // Without any pair.
+  PairGraph(std::uint32_t units, std::uint32_t words)
+      : units_(units),
+        words_(words),
+        stride_((static_cast<std::size_t>(units) + 63) / 64),
+        bits_(stride_ * words) {}
 
   [[nodiscard]] std::uint32_t units() const { return units_; }
   [[nodiscard]] std::uint32_t words() const { return words_; }
   // Bit unit % 64 of row(word)[unit / 64].
   [[nodiscard]] std::span<const std::uint64_t> row(std::uint32_t word) const {
     return {bits_.data() + word * stride_, stride_};
+  }
+  // Makes the row of a word hold the units for which has(unit) is true. Safe to call for several
+  // words at a time.
+  template <typename Has>
+  void set_row(std::uint32_t word, const Has& has) {
+    std::uint64_t* row = bits_.data() + word * stride_;
+    for (std::size_t begin = 0; begin < units_; begin += 64) {
+      const std::size_t count = std::min<std::size_t>(64, units_ - begin);
+      std::uint64_t bits = 0;
+      for (std::size_t k = 0; k < count; ++k) {
+        bits |= static_cast<std::uint64_t>(has(begin + k)) << k;
+      }
+      row[begin / 64] = bits;
+    }
   }
 
  private:
@@ -29,6 +49,9 @@ class ThresholdGraph {
   std::size_t stride_ = 0;
   std::vector<std::uint64_t> bits_;
 };
+
+// The finite pairs with cost <= limit. O(units * words), in parallel.
+[[nodiscard]] PairGraph find_pairs_within(const CostMatrix& costs, float limit);
 
 struct Matching {
   std::vector<std::uint32_t> word_of_unit;  // kNoWord where free
@@ -40,7 +63,7 @@ struct Matching {
 
 // Enlarges `start`, whose pairs must all be in the graph, to as many pairs as possible.
 // O(E sqrt(V)) bit operations (Hopcroft & Karp 1973).
-[[nodiscard]] Matching grow_maximum_matching(const ThresholdGraph& graph, Matching start);
+[[nodiscard]] Matching grow_maximum_matching(const PairGraph& graph, Matching start);
 
 // The part of the graph in which words outnumber units (Dulmage & Mendelsohn 1958): every matching
 // of maximum size gives each scarce unit to a scarce word and serves every other word fully.
@@ -50,6 +73,6 @@ struct Scarcity {
 };
 
 // Precondition: `maximum` is a maximum matching of the graph. O(E) bit operations.
-[[nodiscard]] Scarcity find_scarcity(const ThresholdGraph& graph, const Matching& maximum);
+[[nodiscard]] Scarcity find_scarcity(const PairGraph& graph, const Matching& maximum);
 
 }  // namespace triglyph

@@ -20,6 +20,7 @@
 
 #include "engine/assignment/assignment.h"
 #include "engine/assignment/candidates.h"
+#include "engine/assignment/matching.h"
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
 #include "engine/base/random.h"
@@ -29,6 +30,10 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t kNobody = 0xffffffff;
+constexpr std::size_t kManyTies = 2;  // best units a copy; distinct costs have hardly more than one
+constexpr std::size_t kManyOpen = 8;  // a renewal costs about as much as a look at n / 8 open units
+constexpr std::size_t kLongList = 32;  // times the first list's width
+constexpr std::size_t kSpareCandidates = 16;
 constexpr std::uint32_t kBidsPerWord = 6;  // on average; more bids save few searches
 
 // Invariants: value <= cost + price over all pairs of the word that are allowed, with equality for
@@ -38,6 +43,7 @@ struct Word {
   std::uint32_t deficit = 0;     // copies still without unit
   std::uint32_t in_reserve = 0;  // copies that found no unit
   std::size_t width = 0;         // of the list of candidates, at least
+  std::size_t first_width = 0;
   double value = 0;
   CandidateList list{};
   std::vector<std::uint32_t> held{};  // units
@@ -70,11 +76,18 @@ class Transport {
   void set_first_prices(const TransportProblem& problem);
   void renew_list(std::uint32_t word);
   void give(std::uint32_t unit, std::uint32_t word);
+  [[nodiscard]] bool has_many_ties() const;
+  void match_ties();
   void bid_in_turns();
   void bid(std::uint32_t word, std::vector<std::uint32_t>& losers);
   void serve(std::uint32_t source);
   void visit(std::uint32_t word);
+  void visit_beyond_list(std::uint32_t word);
   void visit_reserve();
+  void follow(std::uint32_t word, std::uint32_t unit, double distance);
+  [[nodiscard]] bool is_closed(std::uint32_t unit) const {
+    return owner_[unit] != kNobody ? is_visited_[owner_[unit]] != 0 : prices_[unit] == kInfinity;
+  }
   void reach(std::uint32_t word, double distance, std::uint32_t from, std::uint32_t through);
   void push(double distance, std::uint32_t code);
   void raise_values();
@@ -96,6 +109,9 @@ class Transport {
   std::vector<std::uint8_t> is_visited_;
   std::vector<std::uint32_t> reached_;  // words to forget afterwards
   std::vector<Event> heap_;
+  std::vector<std::uint32_t> open_units_;  // all that a visited word does not hold, and some more
+  bool is_open_listed_ = false;
+  std::size_t open_count_ = 0;  // units no visited word holds
   Reach reserve_reach_;
   bool is_reserve_visited_ = false;
   Reach end_;  // nearest free unit, or room in the reserve
@@ -104,6 +120,7 @@ class Transport {
 Transport::Transport(const TransportProblem& problem) : limit_(problem.limit) {
   owner_.assign(problem.costs.units, kNobody);
   place_.assign(problem.costs.units, 0);
+  open_count_ = owner_.size();
   count_copies(problem);
   reach_.resize(words_.size());
   is_visited_.resize(words_.size());
@@ -143,7 +160,9 @@ void Transport::count_copies(const TransportProblem& problem) {
     names_.push_back(kNoWord);
     words_.push_back({zeros_, static_cast<std::uint32_t>(open - copies)});
   }
-  for (Word& word : words_) word.width = word.deficit + word.deficit / 4 + 16;
+  for (Word& word : words_) {
+    word.first_width = word.width = word.deficit + word.deficit / 4 + kSpareCandidates;
+  }
 }
 
 // A unit's price starts at minus its cheapest pair: a unit that is expensive for every word alike
@@ -274,20 +293,23 @@ void Transport::reach(std::uint32_t word, double distance, std::uint32_t from,
   push(distance, word);
 }
 
-// Follows all candidates of a word to the words that hold them, to a free unit, to the reserve.
+void Transport::follow(std::uint32_t word, std::uint32_t unit, double distance) {
+  if (distance >= end_.distance) return;
+  const std::uint32_t owner = owner_[unit];
+  if (owner == kNobody) {
+    end_ = {distance, word, unit};
+  } else if (distance < reach_[owner].distance) {
+    reach(owner, distance, word, unit);
+  }
+}
+
+// Follows the candidates of a word to the words that hold them, to a free unit, to the reserve.
 void Transport::visit(std::uint32_t word) {
   const Word& w = words_[word];
   const double distance = reach_[word].distance;
   const double base = distance - w.value;
   for (const Candidate& pair : w.list.pairs) {
-    const double next = std::max(distance, base + (pair.cost + prices_[pair.unit]));
-    if (next >= end_.distance) continue;
-    const std::uint32_t owner = owner_[pair.unit];
-    if (owner == kNobody) {
-      end_ = {next, word, pair.unit};
-    } else if (next < reach_[owner].distance) {
-      reach(owner, next, word, pair.unit);
-    }
+    follow(word, pair.unit, std::max(distance, base + (pair.cost + prices_[pair.unit])));
   }
   const double renewal = std::max(distance, base + w.list.bound);
   if (renewal < end_.distance) push(renewal, static_cast<std::uint32_t>(words_.size()) + word);
@@ -298,6 +320,34 @@ void Transport::visit(std::uint32_t word) {
     reserve_reach_ = {next, word, kNobody};
     push(next, static_cast<std::uint32_t>(2 * words_.size()));
   }
+}
+
+// The list of a word is used up. A new one serves later searches too; but where the search has
+// been almost everywhere, or the list has grown long already, looking at the units whose owner was
+// not visited yet costs less.
+void Transport::visit_beyond_list(std::uint32_t word) {
+  const bool has_many_open = open_count_ * kManyOpen > owner_.size();
+  if (has_many_open && words_[word].width < kLongList * words_[word].first_width) {
+    renew_list(word);
+    visit(word);
+    return;
+  }
+  if (!is_open_listed_) {
+    open_units_.resize(owner_.size());
+    std::iota(open_units_.begin(), open_units_.end(), 0U);
+    is_open_listed_ = true;
+  }
+  const double distance = reach_[word].distance;
+  const double base = distance - words_[word].value;
+  const float* column = words_[word].column.data();
+  std::size_t kept = 0;
+  for (const std::uint32_t unit : open_units_) {
+    if (is_closed(unit)) continue;
+    open_units_[kept++] = unit;
+    if (column[unit] > limit_) continue;
+    follow(word, unit, std::max(distance, base + (column[unit] + prices_[unit])));
+  }
+  open_units_.resize(kept);
 }
 
 void Transport::visit_reserve() {
@@ -321,10 +371,10 @@ void Transport::serve(std::uint32_t source) {
       if (!is_reserve_visited_) visit_reserve();
       is_reserve_visited_ = true;
     } else if (event.code >= count) {
-      renew_list(event.code - count);
-      visit(event.code - count);
+      visit_beyond_list(event.code - count);
     } else if (is_visited_[event.code] == 0) {
       is_visited_[event.code] = 1;
+      open_count_ -= words_[event.code].held.size();
       visit(event.code);
     }
   }
@@ -337,6 +387,8 @@ void Transport::serve(std::uint32_t source) {
   }
   reached_.clear();
   heap_.clear();
+  is_open_listed_ = false;
+  open_count_ = owner_.size();
   reserve_reach_ = {};
   is_reserve_visited_ = false;
   end_ = {};
@@ -368,7 +420,41 @@ void Transport::shift_along_path(std::uint32_t source) {
   --words_[source].deficit;
 }
 
+// Whether the words like far more units best than they can use.
+bool Transport::has_many_ties() const {
+  std::size_t copies = 0;
+  std::size_t ties = 0;
+  for (const Word& word : words_) {
+    copies += word.deficit;
+    for (const Candidate& pair : word.list.pairs) {
+      ties += pair.cost + prices_[pair.unit] <= word.value ? 1 : 0;
+    }
+  }
+  return ties > kManyTies * copies;
+}
+
+// Gives each word as many of the units it likes best as can be done for all words together. Taken
+// one by one, words would take the units that suit everybody and leave those that suit only them.
+void Transport::match_ties() {
+  PairGraph graph(static_cast<std::uint32_t>(owner_.size()),
+                  static_cast<std::uint32_t>(words_.size()));
+  std::vector<std::uint32_t> copies;
+  for (const Word& word : words_) copies.push_back(word.deficit);
+  parallel_for(words_.size(), [&](std::size_t k) {
+    const Word& word = words_[k];
+    graph.set_row(static_cast<std::uint32_t>(k), [&](std::size_t unit) {
+      return (word.column[unit] <= limit_) & (word.column[unit] + prices_[unit] <= word.value);
+    });
+  });
+  const Matching matching = grow_maximum_matching(graph, empty_matching(graph.units(), copies));
+  for (std::uint32_t unit = 0; unit < graph.units(); ++unit) {
+    if (matching.word_of_unit[unit] != kNoWord) give(unit, matching.word_of_unit[unit]);
+  }
+  for (std::size_t k = 0; k < words_.size(); ++k) words_[k].deficit = matching.unserved[k];
+}
+
 void Transport::solve() {
+  if (has_many_ties()) match_ties();
   bid_in_turns();
   for (std::uint32_t word = 0; word < words_.size(); ++word) {
     while (words_[word].deficit > 0) serve(word);
