@@ -1,5 +1,6 @@
 #include "engine/mesh/export_mesh.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -20,13 +21,20 @@ constexpr std::size_t kRowBlock = 1 << 14;  // rows written by one thread
 
 using Bytes = std::vector<char>;
 
+// note: vector::insert of a range makes g++ 12 warn of an overflow that cannot happen.
 void put(Bytes& out, std::string_view text) {
-  out.insert(out.end(), text.begin(), text.end());
+  const std::size_t size = out.size();
+  out.resize(size + text.size());
+  std::copy(text.begin(), text.end(), out.data() + size);
+}
+
+void put_range(Bytes& out, const char* begin, const char* end) {
+  put(out, std::string_view(begin, static_cast<std::size_t>(end - begin)));
 }
 
 void put(Bytes& out, std::uint64_t number) {
   char text[24];
-  out.insert(out.end(), text, std::to_chars(text, text + sizeof text, number).ptr);
+  put_range(out, text, std::to_chars(text, text + sizeof text, number).ptr);
 }
 
 void put(Bytes& out, double number, const ExportFormat& format) {
@@ -39,7 +47,7 @@ void put(Bytes& out, double number, const ExportFormat& format) {
           ? std::to_chars(text, end, number, std::chars_format::general, format.significant_digits)
       : is_float ? std::to_chars(text, end, static_cast<float>(round_to(Scalar::Float32, number)))
                  : std::to_chars(text, end, number);
-  out.insert(out.end(), text, result.ptr);
+  put_range(out, text, result.ptr);
 }
 
 void put_point(Bytes& out, std::string_view lead, const Vec3& p, const ExportFormat& format) {
@@ -54,7 +62,7 @@ void put_point(Bytes& out, std::string_view lead, const Vec3& p, const ExportFor
 void put_binary(Bytes& out, double number, Scalar scalar, bool is_big_endian) {
   char raw[8];
   store(number, scalar, is_big_endian, raw);
-  out.insert(out.end(), raw, raw + size_of(scalar));
+  put_range(out, raw, raw + size_of(scalar));
 }
 
 // Appends what row(i, out) writes for i in [0, n), in order.

@@ -268,11 +268,16 @@ int decimals_at(const NumberStyle& style, double value) {
 }
 
 double step_at(const NumberStyle& style, double value) {
+  const double magnitude = std::abs(value);
+  double step = 0;
   if (style.notation == Notation::Scientific && value != 0) {
-    return std::pow(10.0, integer_digits(std::abs(value)) - style.significant);
+    step = std::pow(10.0, integer_digits(magnitude) - style.significant);
+  } else {
+    const int decimals = decimals_at(style, value);
+    step = decimals <= kMaxExactPower ? 1 / kPower[decimals] : std::pow(10.0, -decimals);
   }
-  const int decimals = decimals_at(style, value);
-  return decimals <= kMaxExactPower ? 1 / kPower[decimals] : std::pow(10.0, -decimals);
+  // Many digits name the same double twice.
+  return std::max(step, magnitude - std::nextafter(magnitude, -1.0));
 }
 
 double round_to(const NumberStyle& style, double value) {

@@ -71,9 +71,8 @@ class HeaderReader {
         read_element(words);
       } else if (words[0] == "property") {
         read_property(words);
-      } else {
-        fail("unknown header line " + quoted(words[0]));
       }
+      // Other lines are passed over: some exporters forget the word "comment".
     }
     if (!has_format_) fail("the header names no format");
     header_.payload = at_;

@@ -45,8 +45,11 @@ class OffReader {
     scan_.skip_space(true);
     const char* start = scan_.position();
     if (scan_.at_end()) scan_.fail("neither the keyword OFF nor counts");
-    if ((*start >= '0' && *start <= '9') || *start == '-' || *start == '+') return;
     std::string_view keyword = scan_.take_token();
+    const bool is_number = (*start >= '0' && *start <= '9') || *start == '-' || *start == '+';
+    if (is_number && !keyword.starts_with("4OFF") && !keyword.starts_with("4nOFF")) {
+      return scan_.move_to(start);
+    }
     const auto skip = [&](std::string_view prefix) {
       const bool has = keyword.starts_with(prefix);
       if (has) keyword.remove_prefix(prefix.size());

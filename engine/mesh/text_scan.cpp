@@ -58,7 +58,7 @@ std::int64_t TextScan::take_integer(std::string_view what, std::int64_t low, std
     value = std::min(value * 10 + (*p - '0'), kSaturated);
   if (negative) value = -value;
   if (p == digits || (p != end_ && !is_separator(*p))) {
-    fail_at("expected " + std::string(what) + " (an integer)");
+    fail_at("expected " + std::string(what));
   }
   if (value < low || value > high) {
     fail_at(std::string(what) + " is not in " + std::to_string(low) + ".." + std::to_string(high));
