@@ -20,8 +20,10 @@ int exit_code_of(ErrorCode code) {
     case ErrorCode::Usage:
     case ErrorCode::Unreadable:
     case ErrorCode::Malformed:
-    case ErrorCode::Unsupported: return kUsageError;
-    case ErrorCode::Unwritable: return kFatal;
+    case ErrorCode::Unsupported:
+      return kUsageError;
+    case ErrorCode::Unwritable:
+      return kFatal;
   }
   return kFatal;
 }

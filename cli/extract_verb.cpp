@@ -33,8 +33,8 @@ void print_text(const std::filesystem::path& path, const Extraction& found) {
     std::cout << "no mark\n";
     return;
   }
-  std::cout << shown(*found.message) << "  " << found.agreeing << " units agree, "
-            << found.parts << " parts, false alarm 2^-32\n";
+  std::cout << shown(*found.message) << "  " << found.agreeing << " units agree, " << found.parts
+            << " parts, false alarm 2^-32\n";
 }
 
 void print_json(const std::filesystem::path& path, const FileExtraction& file) {
@@ -69,9 +69,8 @@ int run_extract(const ExtractArguments& arguments) {
         all_marked = false;
         std::cerr << "triglyph: " << error.what() << "\n";
         if (arguments.json) {
-          const nlohmann::ordered_json json = {{"mesh", path.string()},
-                                               {"status", name_of(error.code())},
-                                               {"error", error.what()}};
+          const nlohmann::ordered_json json = {
+              {"mesh", path.string()}, {"status", name_of(error.code())}, {"error", error.what()}};
           std::cout << json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
         }
       }
@@ -85,16 +84,13 @@ int run_extract(const ExtractArguments& arguments) {
 void add_extract_verb(CLI::App& app, Action& action) {
   CLI::App* verb = app.add_subcommand("extract", "Read the message from meshes, blind");
   auto arguments = std::make_shared<ExtractArguments>();
-  verb->add_option("meshes", arguments->meshes, "Meshes to read")
-      ->required()
-      ->type_name("MESH...");
+  verb->add_option("meshes", arguments->meshes, "Meshes to read")->required()->type_name("MESH...");
   verb->add_flag("--json", arguments->json, "One JSON object a mesh");
   arguments->scheme.add_to(*verb);
   arguments->key.add_to(*verb);
   arguments->machine.add_threads_to(*verb);
-  verb->callback([&action, arguments] {
-    action = [arguments] { return run_extract(*arguments); };
-  });
+  verb->callback(
+      [&action, arguments] { action = [arguments] { return run_extract(*arguments); }; });
 }
 
 }  // namespace triglyph

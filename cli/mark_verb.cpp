@@ -38,8 +38,8 @@ struct MarkArguments {
     JobSettings settings;
     settings.fill = fill;
     const std::string text = message.empty() ? kDefaultMessage : message;
-    settings.message = message_hex.empty() ? Message(text.begin(), text.end())
-                                           : from_hex(message_hex);
+    settings.message =
+        message_hex.empty() ? Message(text.begin(), text.end()) : from_hex(message_hex);
     scheme.apply_to(settings);
     settings.options.layout = layout_method(layout);
     settings.options.assign = assign_method(assign);
@@ -98,9 +98,9 @@ class RecordPrinter {
     failed_ += failed ? 1 : 0;
     bar_.clear();
     if (json_ || file_.is_open()) {
-      const std::string line =
-          to_json(record, peak_bytes()).dump(-1, ' ', false,
-                                             nlohmann::json::error_handler_t::replace) + "\n";
+      const std::string line = to_json(record, peak_bytes())
+                                   .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) +
+                               "\n";
       if (json_) std::cout << line << std::flush;
       if (file_.is_open() && !(file_ << line << std::flush)) {
         throw Error(ErrorCode::Unwritable, records_, "", "the record cannot be written");
@@ -134,7 +134,8 @@ int run_mark(const MarkArguments& arguments) {
   RunOptions options;
   options.memory_bytes = arguments.machine.memory_bytes();
   with_threads(arguments.machine.threads(), [&] {
-    run_jobs(*jobs, key, options, [&](const Record& record) { printer.print(record); }, stop);
+    run_jobs(
+        *jobs, key, options, [&](const Record& record) { printer.print(record); }, stop);
   });
   const std::size_t failed = printer.finish();
   if (stop) return kInterrupted;
@@ -150,8 +151,8 @@ void add_mark_verb(CLI::App& app, Action& action) {
       ->required()
       ->type_name("MANIFEST|MESH...");
   verb->add_option("--out", arguments->out, "Directory for the marked files")->type_name("DIR");
-  auto* message = verb->add_option("--message", arguments->message,
-                                   "Message, 1 to 256 bytes [triglyph]");
+  auto* message =
+      verb->add_option("--message", arguments->message, "Message, 1 to 256 bytes [triglyph]");
   auto* hex = verb->add_option("--message-hex", arguments->message_hex, "Message in hexadecimal");
   auto* fill = verb->add_flag("--fill", arguments->fill,
                               "A random message as long as the capacity, the paper's experiment");
@@ -176,9 +177,7 @@ void add_mark_verb(CLI::App& app, Action& action) {
   arguments->key.add_to(*verb);
   arguments->machine.add_threads_to(*verb);
   arguments->machine.add_memory_to(*verb);
-  verb->callback([&action, arguments] {
-    action = [arguments] { return run_mark(*arguments); };
-  });
+  verb->callback([&action, arguments] { action = [arguments] { return run_mark(*arguments); }; });
 }
 
 }  // namespace triglyph

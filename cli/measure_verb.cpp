@@ -23,8 +23,8 @@ int run_measure(const MeasureArguments& arguments) {
   const MeshFile marked = MeshFile::open(arguments.marked);
   const Mesh& first = original.mesh();
   const Mesh& second = marked.mesh();
-  const bool same = first.triangles == second.triangles &&
-                    first.positions.size() == second.positions.size();
+  const bool same =
+      first.triangles == second.triangles && first.positions.size() == second.positions.size();
   HausdorffDistance distance;
   with_threads(arguments.machine.threads(), [&] {
     distance = same ? hausdorff_of_move(first.triangles, first.positions, second.positions)
@@ -61,9 +61,8 @@ void add_measure_verb(CLI::App& app, Action& action) {
   verb->add_option("marked", arguments->marked, "Mesh to compare with it")->required();
   verb->add_flag("--json", arguments->json, "One JSON object");
   arguments->machine.add_threads_to(*verb);
-  verb->callback([&action, arguments] {
-    action = [arguments] { return run_measure(*arguments); };
-  });
+  verb->callback(
+      [&action, arguments] { action = [arguments] { return run_measure(*arguments); }; });
 }
 
 }  // namespace triglyph

@@ -77,8 +77,7 @@ int run_sample(const SampleArguments& arguments) {
 }  // namespace
 
 void add_sample_verb(CLI::App& app, Action& action) {
-  CLI::App* verb =
-      app.add_subcommand("sample", "Make procedural meshes for trials and benchmarks");
+  CLI::App* verb = app.add_subcommand("sample", "Make procedural meshes for trials and benchmarks");
   auto arguments = std::make_shared<SampleArguments>();
   verb->add_option("--out", arguments->out, "Directory for the meshes")
       ->required()
@@ -99,9 +98,7 @@ void add_sample_verb(CLI::App& app, Action& action) {
       ->capture_default_str();
   verb->add_flag("--ascii", arguments->ascii, "Text instead of binary PLY and STL");
   arguments->machine.add_threads_to(*verb);
-  verb->callback([&action, arguments] {
-    action = [arguments] { return run_sample(*arguments); };
-  });
+  verb->callback([&action, arguments] { action = [arguments] { return run_sample(*arguments); }; });
 }
 
 }  // namespace triglyph

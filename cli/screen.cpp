@@ -44,8 +44,7 @@ void print_table_heading(std::ostream& out) {
 
 void print_table_row(std::ostream& out, const Record& record) {
   const StageTimes& times = record.times;
-  const double seconds =
-      times.load + times.mark + times.write + times.read_back + times.measure;
+  const double seconds = times.load + times.mark + times.write + times.read_back + times.measure;
   out << format("%-32s %9llu %9llu %6u %6u %9.5f%% %6.2fs  ",
                 shortened(record.job.mesh.string(), 32).c_str(),
                 static_cast<unsigned long long>(record.vertices),
@@ -57,7 +56,9 @@ void print_table_row(std::ostream& out, const Record& record) {
 ProgressBar::ProgressBar(std::size_t total)
     : total_(total), start_s_(now_s()), visible_(isatty(STDERR_FILENO) == 1) {}
 
-ProgressBar::~ProgressBar() { clear(); }
+ProgressBar::~ProgressBar() {
+  clear();
+}
 
 void ProgressBar::advance(bool failed) {
   ++done_;

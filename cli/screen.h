@@ -12,7 +12,8 @@ namespace triglyph {
 void print_table_heading(std::ostream& out);
 void print_table_row(std::ostream& out, const Record& record);
 
-// A line on the terminal behind stderr that is redrawn at most ten times a second; silent elsewhere.
+// A line on the terminal behind stderr that is redrawn at most ten times a second; silent
+// elsewhere.
 class ProgressBar {
  public:
   explicit ProgressBar(std::size_t total);

@@ -37,8 +37,8 @@ void print(const VerifyArguments& arguments, const RecordedMark& recorded,
     std::cout << json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
     return;
   }
-  std::cout << recorded.out.string() << ": " << name_of(found.verdict) << ", "
-            << found.units_found << " of " << recorded.units_embedded << " units";
+  std::cout << recorded.out.string() << ": " << name_of(found.verdict) << ", " << found.units_found
+            << " of " << recorded.units_embedded << " units";
   if (!found.detail.empty()) std::cout << " (" << found.detail << ")";
   std::cout << "\n";
 }
@@ -55,8 +55,8 @@ int run_verify(const VerifyArguments& arguments) {
     for (std::size_t number = 1; std::getline(stream, line); ++number) {
       const RecordedMark recorded = parse_line(arguments, line, number);
       const Verification found = verify_file(recorded, key);
-      all_good = all_good && (found.verdict == FileVerdict::Intact ||
-                              found.verdict == FileVerdict::NotMarked);
+      all_good = all_good &&
+                 (found.verdict == FileVerdict::Intact || found.verdict == FileVerdict::NotMarked);
       print(arguments, recorded, found);
     }
   });
@@ -75,9 +75,7 @@ void add_verify_verb(CLI::App& app, Action& action) {
   verb->add_flag("--json", arguments->json, "One JSON object a record");
   arguments->key.add_to(*verb);
   arguments->machine.add_threads_to(*verb);
-  verb->callback([&action, arguments] {
-    action = [arguments] { return run_verify(*arguments); };
-  });
+  verb->callback([&action, arguments] { action = [arguments] { return run_verify(*arguments); }; });
 }
 
 }  // namespace triglyph

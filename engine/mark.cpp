@@ -11,16 +11,20 @@
 namespace triglyph {
 namespace {
 
-// Pairs of unit and word that one assignment looks at: 256 MB of costs. More units than fit are dealt
-// into blocks, each with its share of the demand; beyond that size the optimum is one of blocks.
+// Pairs of unit and word that one assignment looks at: 256 MB of costs. More units than fit are
+// dealt into blocks, each with its share of the demand; beyond that size the optimum is one of
+// blocks.
 constexpr std::size_t kMaxPairs = std::size_t{1} << 26;
 
 Assignment assign(const CostMatrix& costs, std::span<const std::uint32_t> demand,
                   AssignMethod method) {
   switch (method) {
-    case AssignMethod::Sequential: return assign_sequential(costs, demand);
-    case AssignMethod::Bottleneck: return assign_bottleneck(costs, demand);
-    case AssignMethod::Sum: return assign_least_sum(costs, demand);
+    case AssignMethod::Sequential:
+      return assign_sequential(costs, demand);
+    case AssignMethod::Bottleneck:
+      return assign_bottleneck(costs, demand);
+    case AssignMethod::Sum:
+      return assign_least_sum(costs, demand);
   }
   throw Error(ErrorCode::Usage, {}, "", "unknown assignment");
 }
@@ -91,9 +95,12 @@ double mean_edge(const Mesh& mesh) {
 
 std::string_view name_of(AssignMethod method) {
   switch (method) {
-    case AssignMethod::Sequential: return "sequential";
-    case AssignMethod::Bottleneck: return "bottleneck";
-    case AssignMethod::Sum: return "sum";
+    case AssignMethod::Sequential:
+      return "sequential";
+    case AssignMethod::Bottleneck:
+      return "bottleneck";
+    case AssignMethod::Sum:
+      return "sum";
   }
   return "";
 }
@@ -140,8 +147,8 @@ Marking mark(const Surface& surface, std::span<const std::uint8_t> message, cons
 
   // step 2: which word each unit carries
   const auto scheme = scheme_for(code);
-  const std::vector<Placement> placements = assign_words(
-      surface, *scheme, units, valid, options, fill ? 0 : options.redundancy, marking);
+  const std::vector<Placement> placements =
+      assign_words(surface, *scheme, units, valid, options, fill ? 0 : options.redundancy, marking);
   marking.units_assigned = static_cast<std::uint32_t>(placements.size());
 
   settle(surface, *scheme, units, placements, round, marking);

@@ -132,8 +132,7 @@ void settle(const Surface& surface, const Scheme& scheme, const UnitSet& units,
         [&](const Placement& p, std::uint32_t anchor) { return units.anchors[p.unit] < anchor; });
     return !placed.stands(static_cast<std::uint32_t>(at - placements.begin()));
   });
-  marking.units_dropped =
-      static_cast<std::uint32_t>(placements.size() - marking.carriers.size());
+  marking.units_dropped = static_cast<std::uint32_t>(placements.size() - marking.carriers.size());
 }
 
 }  // namespace triglyph

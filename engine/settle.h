@@ -1,5 +1,5 @@
-// From ideal positions to those a file will hold: what the mark does to a mesh must survive rounding
-// and must not turn a face over. Units that fail are put back as they were.
+// From ideal positions to those a file will hold: what the mark does to a mesh must survive
+// rounding and must not turn a face over. Units that fail are put back as they were.
 #pragma once
 
 #include "engine/mark.h"

@@ -68,8 +68,8 @@ bool apply(const std::string& key, const Json& value, JobSettings& settings) {
   return true;
 }
 
-// Where the output of one mesh goes if its line does not name a file: below `directory`, as the mesh
-// lies below `root`.
+// Where the output of one mesh goes if its line does not name a file: below `directory`, as the
+// mesh lies below `root`.
 fs::path place_below(const fs::path& directory, const fs::path& mesh, const fs::path& root) {
   const fs::path relative = mesh.lexically_relative(root);
   const bool inside = !relative.empty() && *relative.begin() != "..";
@@ -152,8 +152,8 @@ void ManifestReader::read_line(const std::string& line) try {
   }
   JobSettings settings = defaults_;
   std::string out = default_out_;
-  for (const auto& [key, value] : (heading ? object.value("defaults", Json::object()) : object)
-                                      .items()) {
+  const Json keys = heading ? object.value("defaults", Json::object()) : object;
+  for (const auto& [key, value] : keys.items()) {
     if (key == "out") {
       out = value.get<std::string>();
     } else if ((key != "mesh" || heading) && !apply(key, value, settings)) {
@@ -175,9 +175,9 @@ void ManifestReader::read_line(const std::string& line) try {
   if (out.empty() && out_directory_.empty()) fail("\"out\" is missing and no --out was given");
   const fs::path root = has_wildcard(pattern.string()) ? glob_root(pattern) : base;
   for (const fs::path& mesh : meshes) {
-    const fs::path target = names_file ? base / out
-                                       : place_below(out.empty() ? out_directory_ : base / out,
-                                                     mesh, root);
+    const fs::path target =
+        names_file ? base / out
+                   : place_below(out.empty() ? out_directory_ : base / out, mesh, root);
     ready_.push_back({0, mesh, target, settings});
   }
 } catch (const Json::exception& error) {

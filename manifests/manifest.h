@@ -23,10 +23,10 @@ class JobSource {
   [[nodiscard]] virtual std::optional<Job> next() = 0;
 };
 
-// Keys of one line: mesh, out, message, message_hex, fill, scheme, layout, assign, cost, redundancy,
-// marker_bits, subscript_bits, part_bits, step; "defaults" takes all but mesh. A line's "out" is a
-// file, or a directory if it ends in "/"; without it the output goes to `out_directory`, under the
-// path below the manifest (or below the fixed part of the glob).
+// Keys of one line: mesh, out, message, message_hex, fill, scheme, layout, assign, cost,
+// redundancy, marker_bits, subscript_bits, part_bits, step; "defaults" takes all but mesh. A line's
+// "out" is a file, or a directory if it ends in "/"; without it the output goes to `out_directory`,
+// under the path below the manifest (or below the fixed part of the glob).
 class ManifestReader final : public JobSource {
  public:
   // Throws Error Unreadable. Settings not named in the manifest are `settings`.
@@ -71,8 +71,8 @@ class MeshList final : public JobSource {
 // The longest leading part of a pattern without wildcards, a directory.
 [[nodiscard]] std::filesystem::path glob_root(const std::filesystem::path& pattern);
 
-// Looks at a whole run before it starts. Throws Error Usage if an output would overwrite an input or
-// another output. Returns the number of jobs. 16 bytes of memory a job.
+// Looks at a whole run before it starts. Throws Error Usage if an output would overwrite an input
+// or another output. Returns the number of jobs. 16 bytes of memory a job.
 std::size_t check_plan(JobSource& jobs);
 
 }  // namespace triglyph

@@ -12,11 +12,16 @@ namespace {
 
 Status status_of(ErrorCode code) {
   switch (code) {
-    case ErrorCode::Unreadable: return Status::Unreadable;
-    case ErrorCode::Malformed: return Status::Malformed;
-    case ErrorCode::Unsupported: return Status::Unsupported;
-    case ErrorCode::Unwritable: return Status::Unwritable;
-    case ErrorCode::Usage: return Status::Usage;
+    case ErrorCode::Unreadable:
+      return Status::Unreadable;
+    case ErrorCode::Malformed:
+      return Status::Malformed;
+    case ErrorCode::Unsupported:
+      return Status::Unsupported;
+    case ErrorCode::Unwritable:
+      return Status::Unwritable;
+    case ErrorCode::Usage:
+      return Status::Usage;
   }
   return Status::Failed;
 }
@@ -111,10 +116,10 @@ void mark(Task& task, const Key& key) noexcept {
     Record& record = task.record;
     const JobSettings& settings = record.job.settings;
     record.key_fingerprint = key.fingerprint();
-    task.marking = mark({task.file->mesh(), *task.halfedges},
-                        settings.fill ? Message{} : settings.message, key, settings.options,
-                        [&](const Vec3& point) { return task.file->round(point); },
-                        task.file->number_step());
+    task.marking = mark(
+        {task.file->mesh(), *task.halfedges}, settings.fill ? Message{} : settings.message, key,
+        settings.options, [&](const Vec3& point) { return task.file->round(point); },
+        task.file->number_step());
     describe(task.marking, record);
     const std::string name = record.job.mesh.string() + ": ";
     if (task.marking.status == MarkStatus::TooSmall) {
@@ -145,15 +150,14 @@ void read_back(Task& task, const Key& key) noexcept {
     Record& record = task.record;
     const JobSettings& settings = record.job.settings;
     const WordCode code(key, record.format);
-    const auto scheme =
-        make_scheme(settings.options.scheme, code, settings.options.scheme_options);
+    const auto scheme = make_scheme(settings.options.scheme, code, settings.options.scheme_options);
     const Readable written(task.output->temporary_path());
     const Extraction found = extract(written.surface(), *scheme, code);
     record.units_embedded = count_carriers(task.marking, found.readings);
-    const bool verified =
-        settings.fill ? record.units_embedded > 0 &&
-                            record.units_embedded >= task.marking.carriers.size() * 99 / 100
-                      : found.message == settings.message;
+    const bool verified = settings.fill
+                              ? record.units_embedded > 0 &&
+                                    record.units_embedded >= task.marking.carriers.size() * 99 / 100
+                              : found.message == settings.message;
     if (verified) {
       task.output->commit();
     } else {
@@ -197,20 +201,26 @@ FileExtraction extract_file(const std::filesystem::path& path, const Key& key,
 
 std::string_view name_of(FileVerdict verdict) {
   switch (verdict) {
-    case FileVerdict::Intact: return "intact";
-    case FileVerdict::Altered: return "altered, mark present";
-    case FileVerdict::Missing: return "missing";
-    case FileVerdict::Lost: return "mark lost";
-    case FileVerdict::Damaged: return "damaged";
-    case FileVerdict::NotMarked: return "not marked";
+    case FileVerdict::Intact:
+      return "intact";
+    case FileVerdict::Altered:
+      return "altered, mark present";
+    case FileVerdict::Missing:
+      return "missing";
+    case FileVerdict::Lost:
+      return "mark lost";
+    case FileVerdict::Damaged:
+      return "damaged";
+    case FileVerdict::NotMarked:
+      return "not marked";
   }
   return "";
 }
 
 Verification verify_file(const RecordedMark& recorded, const Key& key) {
   if (recorded.status != Status::Marked) {
-    return {FileVerdict::NotMarked, 0, "the record says \"" + std::string(name_of(recorded.status)) +
-                                           "\""};
+    return {FileVerdict::NotMarked, 0,
+            "the record says \"" + std::string(name_of(recorded.status)) + "\""};
   }
   if (!std::filesystem::exists(recorded.out)) {
     return {FileVerdict::Missing, 0, recorded.out.string() + ": no such file"};
@@ -226,9 +236,8 @@ Verification verify_file(const RecordedMark& recorded, const Key& key) {
                                         : code.words_of(recorded.settings.message);
     Verification result;
     result.units_found = count_words(code, words, found.readings);
-    const bool carries = recorded.settings.fill
-                             ? 2 * result.units_found > recorded.units_embedded
-                             : found.message == recorded.settings.message;
+    const bool carries = recorded.settings.fill ? 2 * result.units_found > recorded.units_embedded
+                                                : found.message == recorded.settings.message;
     if (!carries) {
       const bool other_key = recorded.key_fingerprint != key.fingerprint();
       return {FileVerdict::Lost, result.units_found,

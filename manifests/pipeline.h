@@ -42,12 +42,12 @@ struct FileExtraction {
 
 // What verify says about the file of a record.
 enum class FileVerdict {
-  Intact,      // byte for byte what was written, and it carries its message
-  Altered,     // other bytes, but it still carries its message
-  Missing,     // no file
-  Lost,        // readable, but the message is not there
-  Damaged,     // not readable as a mesh
-  NotMarked,   // the record is of a mesh that was not marked
+  Intact,     // byte for byte what was written, and it carries its message
+  Altered,    // other bytes, but it still carries its message
+  Missing,    // no file
+  Lost,       // readable, but the message is not there
+  Damaged,    // not readable as a mesh
+  NotMarked,  // the record is of a mesh that was not marked
 };
 [[nodiscard]] std::string_view name_of(FileVerdict verdict);
 

@@ -1,6 +1,6 @@
-// What is written down about one mesh: one JSON object a line, keys in a fixed order. Everything but
-// the "run" object depends on the inputs alone, so the records of two runs can be compared without
-// it.
+// What is written down about one mesh: one JSON object a line, keys in a fixed order. Everything
+// but the "run" object depends on the inputs alone, so the records of two runs can be compared
+// without it.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ enum class Status {
   Unsupported,
   Unwritable,
   Usage,
-  Failed,       // an error of the program itself
+  Failed,  // an error of the program itself
   Interrupted,
 };
 

@@ -16,8 +16,8 @@ namespace {
 
 using TaskPointer = std::shared_ptr<Task>;
 
-// Jobs that may be known to the graph at once: enough to choose large ones first and to keep records
-// in order while one mesh takes long, few enough to cost no memory.
+// Jobs that may be known to the graph at once: enough to choose large ones first and to keep
+// records in order while one mesh takes long, few enough to cost no memory.
 constexpr std::size_t kWindow = 256;
 
 // A mesh has let go of its memory.
@@ -140,11 +140,11 @@ void run_jobs(JobSource& jobs, const Key& key, const RunOptions& options,
     while (TaskPointer task = admission.admit()) std::get<0>(ports).try_put(task);
   });
   const auto stage = [&](void (Stages::*work)(Task&) const) {
-    return flow::function_node<TaskPointer, TaskPointer>(
-        graph, flow::unlimited, [&stages, work](TaskPointer task) {
-          (stages.*work)(*task);
-          return task;
-        });
+    return flow::function_node<TaskPointer, TaskPointer>(graph, flow::unlimited,
+                                                         [&stages, work](TaskPointer task) {
+                                                           (stages.*work)(*task);
+                                                           return task;
+                                                         });
   };
   auto load_node = stage(&Stages::run_load);
   auto mark_node = stage(&Stages::run_mark);

@@ -17,11 +17,16 @@ std::string compose(const std::filesystem::path& path, const std::string& place,
 
 std::string_view name_of(ErrorCode code) {
   switch (code) {
-    case ErrorCode::Unreadable: return "unreadable";
-    case ErrorCode::Malformed: return "malformed";
-    case ErrorCode::Unsupported: return "unsupported";
-    case ErrorCode::Unwritable: return "unwritable";
-    case ErrorCode::Usage: return "usage";
+    case ErrorCode::Unreadable:
+      return "unreadable";
+    case ErrorCode::Malformed:
+      return "malformed";
+    case ErrorCode::Unsupported:
+      return "unsupported";
+    case ErrorCode::Unwritable:
+      return "unwritable";
+    case ErrorCode::Usage:
+      return "usage";
   }
   return "error";
 }
@@ -34,9 +39,13 @@ Error::Error(ErrorCode code, const std::filesystem::path& path, std::string plac
       place_(std::move(place)),
       message_(std::move(message)) {}
 
-std::string at_line(std::size_t line) { return "line " + std::to_string(line); }
+std::string at_line(std::size_t line) {
+  return "line " + std::to_string(line);
+}
 
-std::string at_byte(std::size_t offset) { return "byte " + std::to_string(offset); }
+std::string at_byte(std::size_t offset) {
+  return "byte " + std::to_string(offset);
+}
 
 void check(bool promise, const char* text, const char* file, int line) {
   if (promise) return;

@@ -39,8 +39,7 @@ void parallel_for(std::size_t n, const Body& body, std::size_t grain = 1) {
 template <typename Body>
 void parallel_blocks(std::size_t n, const Body& body, std::size_t block = kBlock) {
   const std::size_t blocks = (n + block - 1) / block;
-  parallel_for(blocks,
-               [&](std::size_t b) { body(b * block, std::min(n, b * block + block)); });
+  parallel_for(blocks, [&](std::size_t b) { body(b * block, std::min(n, b * block + block)); });
 }
 
 // Folds map(0) .. map(n - 1) with join, in index order inside blocks and across them.

@@ -15,8 +15,12 @@ using OpenMesh::VertexHandle;
 using Corner = std::uint32_t;
 constexpr Corner kNone = 0xffffffff;
 
-Corner next(Corner corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
-Corner previous(Corner corner) { return corner % 3 == 0 ? corner + 2 : corner - 1; }
+Corner next(Corner corner) {
+  return corner % 3 == 2 ? corner - 2 : corner + 1;
+}
+Corner previous(Corner corner) {
+  return corner % 3 == 0 ? corner + 2 : corner - 1;
+}
 
 struct Corners {
   const Mesh& mesh;

@@ -1,6 +1,6 @@
-// Connectivity of a mesh as an OpenMesh halfedge kernel. Built in bulk from the triangles instead of
-// face by face, so that no face is refused: where the surface is not manifold it is cut open in the
-// kernel, and the points stay as they are.
+// Connectivity of a mesh as an OpenMesh halfedge kernel. Built in bulk from the triangles instead
+// of face by face, so that no face is refused: where the surface is not manifold it is cut open in
+// the kernel, and the points stay as they are.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +13,10 @@
 namespace triglyph {
 
 // Face f of the kernel is triangle f of the mesh, and its first halfedge runs from the triangle's
-// first corner to its second. An edge with other than two faces, or with two faces that run along it
-// in the same direction, is a boundary edge of each. A point at which several fans of triangles
-// touch has one kernel vertex a fan: vertices 0 .. points - 1 are the points themselves (their first
-// fan), the copies follow.
+// first corner to its second. An edge with other than two faces, or with two faces that run along
+// it in the same direction, is a boundary edge of each. A point at which several fans of triangles
+// touch has one kernel vertex a fan: vertices 0 .. points - 1 are the points themselves (their
+// first fan), the copies follow.
 struct Halfedges {
   OpenMesh::TriConnectivity kernel;
   std::vector<std::uint32_t> copied_point;  // point of vertex points + i

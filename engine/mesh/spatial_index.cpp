@@ -56,8 +56,8 @@ struct SpatialIndex::Scene {
     const Scene& scene = *query.scene;
     const Triangle& triangle = scene.triangles[arguments->primID];
     const Vec3 point =
-        closest_on_triangle(query.point, scene.positions[triangle[0]],
-                            scene.positions[triangle[1]], scene.positions[triangle[2]]);
+        closest_on_triangle(query.point, scene.positions[triangle[0]], scene.positions[triangle[1]],
+                            scene.positions[triangle[2]]);
     const double squared = (point - query.point).sqrnorm();
     const bool nearer = squared < query.best_squared ||
                         (squared == query.best_squared && arguments->primID < query.best.triangle);
@@ -73,9 +73,9 @@ struct SpatialIndex::Scene {
 
   void attach_triangles() {
     RTCGeometry geometry = rtcNewGeometry(shared_device(), RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* points = static_cast<float*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                3 * sizeof(float), positions.size()));
+    auto* points = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
+                                                               RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+                                                               positions.size()));
     auto* corners = static_cast<std::uint32_t*>(
         rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                 3 * sizeof(std::uint32_t), triangles.size()));

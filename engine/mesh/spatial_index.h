@@ -1,6 +1,7 @@
-// Closest points on a set of triangles. Embree finds the candidates in single precision, relative to
-// the box's centre and with padded radii; distances are computed and compared in double, and of equal
-// ones the lowest triangle wins, so an answer depends neither on threads nor on the instruction set.
+// Closest points on a set of triangles. Embree finds the candidates in single precision, relative
+// to the box's centre and with padded radii; distances are computed and compared in double, and of
+// equal ones the lowest triangle wins, so an answer depends neither on threads nor on the
+// instruction set.
 #pragma once
 
 #include <cstdint>

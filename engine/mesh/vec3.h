@@ -7,7 +7,11 @@ namespace triglyph {
 
 using Vec3 = OpenMesh::Vec3d;
 
-[[nodiscard]] inline double dot(const Vec3& a, const Vec3& b) { return a | b; }
-[[nodiscard]] inline Vec3 cross(const Vec3& a, const Vec3& b) { return a % b; }
+[[nodiscard]] inline double dot(const Vec3& a, const Vec3& b) {
+  return a | b;
+}
+[[nodiscard]] inline Vec3 cross(const Vec3& a, const Vec3& b) {
+  return a % b;
+}
 
 }  // namespace triglyph

@@ -18,7 +18,9 @@ constexpr char kContext[crypto_kdf_CONTEXTBYTES + 1] = "triglyph";
 constexpr std::string_view kHeading = "triglyph key 1";
 constexpr std::string_view kTrialSeed = "triglyph public trial key";
 
-void start_sodium() { check(sodium_init() >= 0, "libsodium cannot be initialised"); }
+void start_sodium() {
+  check(sodium_init() >= 0, "libsodium cannot be initialised");
+}
 
 template <std::size_t N>
 std::array<std::uint8_t, N> hash(std::span<const std::uint8_t> bytes,
@@ -68,8 +70,8 @@ std::string read_private_file(const std::filesystem::path& path) {
 Key Key::trial() {
   start_sodium();
   Key key;
-  key.secret_ = hash<kBytes>({reinterpret_cast<const std::uint8_t*>(kTrialSeed.data()),
-                              kTrialSeed.size()});
+  key.secret_ =
+      hash<kBytes>({reinterpret_cast<const std::uint8_t*>(kTrialSeed.data()), kTrialSeed.size()});
   return key;
 }
 
@@ -116,7 +118,9 @@ void Key::save(const std::filesystem::path& path) const {
   }
 }
 
-Key::~Key() { sodium_memzero(secret_.data(), secret_.size()); }
+Key::~Key() {
+  sodium_memzero(secret_.data(), secret_.size());
+}
 
 std::array<std::uint8_t, Key::kBytes> Key::derive(KeyUse use) const {
   std::array<std::uint8_t, kBytes> subkey;
@@ -143,7 +147,9 @@ std::string Key::fingerprint() const {
   return to_hex(derive(KeyUse::Fingerprint)).substr(0, 16);
 }
 
-bool Key::is_trial() const { return secret_ == trial().secret_; }
+bool Key::is_trial() const {
+  return secret_ == trial().secret_;
+}
 
 std::string to_hex(std::span<const std::uint8_t> bytes) {
   std::string text(2 * bytes.size() + 1, '\0');

@@ -15,11 +15,11 @@ namespace triglyph {
 
 // One unit whose marker was found in a mesh.
 struct Reading {
-  std::uint32_t anchor = 0;                 // the unit's anchor in the mesh that was read
-  Word word;                                // the bits that stand there
-  float weight = 0;                         // product of the closeness of all its invariants, 0..1
-  float worst_offset = 0;                   // farthest from a cell centre; 1 is the cell's border
-  std::array<float, 32> bit_weights{};      // closeness of the invariant that holds each part bit
+  std::uint32_t anchor = 0;             // the unit's anchor in the mesh that was read
+  Word word;                            // the bits that stand there
+  float weight = 0;                     // product of the closeness of all its invariants, 0..1
+  float worst_offset = 0;               // farthest from a cell centre; 1 is the cell's border
+  std::array<float, 32> bit_weights{};  // closeness of the invariant that holds each part bit
 };
 
 class Votes {

@@ -37,9 +37,8 @@ double farthest_sample(std::vector<Sample>& samples, const SpatialIndex& surface
         count,
         [&](std::size_t i) {
           const Sample& sample = samples[begin + i];
-          distances[i] = sample.reach <= farthest
-                             ? 0
-                             : surface.closest(sample.point, sample.reach).distance;
+          distances[i] =
+              sample.reach <= farthest ? 0 : surface.closest(sample.point, sample.reach).distance;
         },
         64);
     for (std::size_t i = 0; i < count; ++i) {
@@ -87,8 +86,8 @@ std::vector<Sample> samples_of(const Mesh& mesh) {
   samples.reserve(kWeights.size() * mesh.triangles.size());
   for (const Triangle& triangle : mesh.triangles) {
     for (const auto& weights : kWeights) {
-      samples.push_back({blend(triangle, mesh.positions, weights),
-                         std::numeric_limits<double>::infinity()});
+      samples.push_back(
+          {blend(triangle, mesh.positions, weights), std::numeric_limits<double>::infinity()});
     }
   }
   return samples;
@@ -131,10 +130,10 @@ Displacement displacement(std::span<const Vec3> before, std::span<const Vec3> af
   check(before.size() == after.size(), "displacements need the same points");
   if (before.empty()) return {};
   const auto squared = [&](std::size_t i) { return (after[i] - before[i]).sqrnorm(); };
-  const double largest = parallel_reduce(
-      before.size(), 0.0, squared, [](double a, double b) { return std::max(a, b); });
-  const double sum = parallel_reduce(before.size(), 0.0, squared,
-                                     [](double a, double b) { return a + b; });
+  const double largest = parallel_reduce(before.size(), 0.0, squared,
+                                         [](double a, double b) { return std::max(a, b); });
+  const double sum =
+      parallel_reduce(before.size(), 0.0, squared, [](double a, double b) { return a + b; });
   return {std::sqrt(largest), std::sqrt(sum / static_cast<double>(before.size()))};
 }
 

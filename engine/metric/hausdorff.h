@@ -1,5 +1,5 @@
-// How far two surfaces are from each other, sampled at points, edge midpoints and centroids of their
-// triangles; distances from a sample to a surface are exact (Embree prunes, double decides).
+// How far two surfaces are from each other, sampled at points, edge midpoints and centroids of
+// their triangles; distances from a sample to a surface are exact (Embree prunes, double decides).
 // note: a lower bound of the true Hausdorff distance, which may be attained between samples.
 #pragma once
 

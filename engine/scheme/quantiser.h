@@ -1,6 +1,6 @@
-// Quantisation index modulation of one scalar invariant: the line is cut into cells of width `step`,
-// shifted by a keyed offset; cells are numbered cyclically by b bits in Gray order, so that slipping
-// into a neighbouring cell costs one bit. Shared by all schemes.
+// Quantisation index modulation of one scalar invariant: the line is cut into cells of width
+// `step`, shifted by a keyed offset; cells are numbered cyclically by b bits in Gray order, so that
+// slipping into a neighbouring cell costs one bit. Shared by all schemes.
 #pragma once
 
 #include <cmath>

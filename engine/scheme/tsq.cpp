@@ -12,19 +12,18 @@ namespace {
 using Quadruple = std::array<std::uint32_t, 6>;  // v0, v1, v2 of M from its base on, S, D1, D2
 
 // All in units of the triangle's base.
-constexpr double kMinHeight = 0.02;       // flatter triangles have no stable plane to move in
-constexpr double kLongestGap = 0.01;      // the base stays this much longer than the other edges
-constexpr double kMaxMove = 0.5;          // a cell farther away is not worth a unit
+constexpr double kMinHeight = 0.02;         // flatter triangles have no stable plane to move in
+constexpr double kLongestGap = 0.01;        // the base stays this much longer than the other edges
+constexpr double kMaxMove = 0.5;            // a cell farther away is not worth a unit
 constexpr std::size_t kUnitsPerBlock = 16;  // rows of the cost matrix a thread takes at a time
-constexpr int kMaxNumberBits = 8;  // a channel's 16 bits at most are shared by two numbers
+constexpr int kMaxNumberBits = 8;           // a channel's 16 bits at most are shared by two numbers
 
 // Which corner of triangle `face` the longest edge leaves; the first of equals.
 std::uint32_t longest_side(const Mesh& mesh, std::uint32_t face) {
   const Triangle& triangle = mesh.triangles[face];
   std::array<double, 3> squared{};
   for (std::uint32_t i = 0; i < 3; ++i) {
-    squared[i] =
-        (mesh.positions[triangle[(i + 1) % 3]] - mesh.positions[triangle[i]]).sqrnorm();
+    squared[i] = (mesh.positions[triangle[(i + 1) % 3]] - mesh.positions[triangle[i]]).sqrnorm();
   }
   return static_cast<std::uint32_t>(std::max_element(squared.begin(), squared.end()) -
                                     squared.begin());
@@ -42,8 +41,8 @@ std::optional<Quadruple> quadruple_of(const Surface& surface, std::uint32_t face
   for (std::size_t i = 3; i < 6; ++i) {
     const auto across = kernel.opposite_halfedge_handle(side);
     if (kernel.is_boundary(across)) return std::nullopt;
-    points[i] = surface.halfedges.point(
-        kernel.to_vertex_handle(kernel.next_halfedge_handle(across)));
+    points[i] =
+        surface.halfedges.point(kernel.to_vertex_handle(kernel.next_halfedge_handle(across)));
     side = kernel.next_halfedge_handle(side);
   }
   // the apexes differ from M's corners by construction unless two faces share all their points
@@ -67,7 +66,9 @@ bool keeps_longest_base(double x, double height) {
 }
 
 // note: std::hypot guards against overflow that cannot occur here, at ten times the cost
-double length(double x, double y) { return std::sqrt(x * x + y * y); }
+double length(double x, double y) {
+  return std::sqrt(x * x + y * y);
+}
 
 // Directions along a base and from it towards an apex, unit vectors.
 struct Frame {
@@ -83,8 +84,8 @@ struct Frame {
 }  // namespace
 
 // The apexes that carry each value of a channel, for one triangle. The nearest cell of the height
-// and the nearest of the ratio are tried first; only where no triangle has that shape, or the caller
-// refuses it, the next cells on the other side.
+// and the nearest of the ratio are tried first; only where no triangle has that shape, or the
+// caller refuses it, the next cells on the other side.
 class TsqScheme::ApexChoices {
  public:
   ApexChoices(const FlatTriangle& triangle, const Channel& channel)
@@ -184,11 +185,10 @@ TsqScheme::TsqScheme(const WordCode& code, const SchemeOptions& options)
     : options_(options),
       marker_(code.marker()),
       marker_channel_(make_channel(code, options.step, code.format().marker_bits, 0)),
-      outer_channels_{
-          make_channel(code, options.step, code.format().subscript_bits, 1),
-          make_channel(code, options.step, code.format().part_bits / 2, 2),
-          make_channel(code, options.step,
-                       code.format().part_bits - code.format().part_bits / 2, 3)} {
+      outer_channels_{make_channel(code, options.step, code.format().subscript_bits, 1),
+                      make_channel(code, options.step, code.format().part_bits / 2, 2),
+                      make_channel(code, options.step,
+                                   code.format().part_bits - code.format().part_bits / 2, 3)} {
   if (!(options.step > 0 && options.step <= 0.5)) {
     throw Error(ErrorCode::Usage, {}, "", "the cell width of tsq lies above 0 and up to 0.5");
   }
@@ -201,10 +201,10 @@ std::optional<FlatCorners> TsqScheme::reshape_to_marker(const FlatTriangle& tria
   choices.for_each_cell(marker_, [&](double x, double height) {
     if (!keeps_longest_base(x, height)) return false;
     const FlatCorners moved = reshape(triangle, x, height);
-    const double move = std::max({length(moved.x[0], moved.y[0]),
-                                  length(moved.x[1] - triangle.base, moved.y[1]),
-                                  length(moved.x[2] - triangle.base * triangle.x,
-                                         moved.y[2] - triangle.base * triangle.height)});
+    const double move =
+        std::max({length(moved.x[0], moved.y[0]), length(moved.x[1] - triangle.base, moved.y[1]),
+                  length(moved.x[2] - triangle.base * triangle.x,
+                         moved.y[2] - triangle.base * triangle.height)});
     if (move >= best_move) return false;
     best_move = move;
     best = moved;
@@ -277,8 +277,8 @@ float TsqScheme::combine(const Marked& marked, float s, float d1, float d2) cons
 CostMatrix TsqScheme::costs(const Surface& surface, const UnitSet& units,
                             std::span<const std::uint32_t> chosen,
                             std::span<const Word> words) const {
-  CostMatrix matrix{static_cast<std::uint32_t>(chosen.size()),
-                    static_cast<std::uint32_t>(words.size()), {}};
+  CostMatrix matrix{
+      static_cast<std::uint32_t>(chosen.size()), static_cast<std::uint32_t>(words.size()), {}};
   matrix.values.resize(chosen.size() * words.size());
   const auto fill_row = [&](std::size_t row) {
     const auto cost = [&](std::size_t column) -> float& {
@@ -336,8 +336,8 @@ Embedding TsqScheme::embed(const Surface& surface, const UnitSet& units,
 }
 
 bool TsqScheme::has_marker(const Mesh& mesh, const Quadruple& points, Reading& reading) const {
-  const FlatTriangle triangle = flatten(mesh.positions[points[0]], mesh.positions[points[1]],
-                                        mesh.positions[points[2]]);
+  const FlatTriangle triangle =
+      flatten(mesh.positions[points[0]], mesh.positions[points[1]], mesh.positions[points[2]]);
   const auto height = marker_channel_.height.cell_of(triangle.height);
   if (height.bits != marker_channel_.height_bits(marker_)) return false;
   const auto log_ratio = marker_channel_.log_ratio.cell_of(triangle.shape().log_ratio);
@@ -354,13 +354,11 @@ void TsqScheme::read_outer(const Mesh& mesh, const Quadruple& points, Reading& r
   std::size_t part_bit = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     const Channel& channel = outer_channels_[i];
-    const TriangleShape shape =
-        outer_triangle(corners, i, mesh.positions[points[3 + i]]).shape();
+    const TriangleShape shape = outer_triangle(corners, i, mesh.positions[points[3 + i]]).shape();
     const auto height = channel.height.cell_of(shape.height);
     const auto log_ratio = channel.log_ratio.cell_of(shape.log_ratio);
     bits[i] = height.bits | log_ratio.bits << channel.height.bits();
-    reading.worst_offset =
-        std::max({reading.worst_offset, height.distance, log_ratio.distance});
+    reading.worst_offset = std::max({reading.worst_offset, height.distance, log_ratio.distance});
     reading.weight *= (1 - height.distance) * (1 - log_ratio.distance);
     if (i == 0) continue;
     for (int b = 0; b < channel.bits(); ++b) {
@@ -372,15 +370,16 @@ void TsqScheme::read_outer(const Mesh& mesh, const Quadruple& points, Reading& r
 }
 
 std::vector<Reading> TsqScheme::read(const Surface& surface) const {
-  return parallel_collect<Reading>(
-      surface.mesh.triangles.size(), [&](std::size_t face, std::vector<Reading>& out) {
-        Reading reading;
-        reading.anchor = static_cast<std::uint32_t>(face);
-        const auto points = quadruple_of(surface, reading.anchor);
-        if (!points || !has_marker(surface.mesh, *points, reading)) return;
-        read_outer(surface.mesh, *points, reading);
-        if (std::isfinite(reading.weight)) out.push_back(reading);
-      });
+  return parallel_collect<Reading>(surface.mesh.triangles.size(),
+                                   [&](std::size_t face, std::vector<Reading>& out) {
+                                     Reading reading;
+                                     reading.anchor = static_cast<std::uint32_t>(face);
+                                     const auto points = quadruple_of(surface, reading.anchor);
+                                     if (!points || !has_marker(surface.mesh, *points, reading))
+                                       return;
+                                     read_outer(surface.mesh, *points, reading);
+                                     if (std::isfinite(reading.weight)) out.push_back(reading);
+                                   });
 }
 
 }  // namespace triglyph

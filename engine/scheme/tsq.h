@@ -12,7 +12,8 @@
 //
 // This work is based on:
 // Ohbuchi, Masuda, Aono. Watermarking three-dimensional polygonal models. ACM Multimedia 1997.
-// Wang, Hu. Optimization approach for 3D model watermarking by linear binary programming. CAGD 2010.
+// Wang, Hu. Optimization approach for 3D model watermarking by linear binary programming. CAGD
+// 2010.
 //
 // Survives similarity transforms, any reordering, cropping and rounding well below a cell; not
 // general affine maps, noise of the size of a cell, remeshing, or flipping the mesh's winding.

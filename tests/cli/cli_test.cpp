@@ -29,8 +29,9 @@ class Cli : public testing::Test {
  protected:
   // Arguments are words for the shell; the folder of the test is the working directory.
   Result run(const std::string& arguments) const {
-    const std::string command = "cd '" + folder_.path().string() + "' && '" TRIGLYPH_EXECUTABLE "' " +
-                                arguments + " >.out 2>.err </dev/null";
+    const std::string command = "cd '" + folder_.path().string() +
+                                "' && '" TRIGLYPH_EXECUTABLE "' " + arguments +
+                                " >.out 2>.err </dev/null";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 128, test::read_all(folder_ / ".out"),
             test::read_all(folder_ / ".err")};
@@ -50,12 +51,12 @@ TEST_F(Cli, VersionAndHelpSucceedAndUsageErrorsAreTwo) {
   EXPECT_NE(run("--version").out.find("triglyph 0."), std::string::npos);
   EXPECT_EQ(run("--help").code, 0);
   EXPECT_EQ(run("mark --help").code, 0);
-  for (const char* wrong : {"", "frobnicate", "mark", "mark a.obj --layout best --out o",
-                            "mark a.obj", "mark a.obj --out o --message a --fill",
-                            "mark a.obj --out o --message-hex xy", "extract",
-                            "mark a.obj --out o --subscript-bits 2", "mark a.obj --out o --threads 0",
-                            "extract a.obj --key-file absent.key", "mark absent.jsonl --out o",
-                            "verify absent.jsonl"}) {
+  for (const char* wrong :
+       {"", "frobnicate", "mark", "mark a.obj --layout best --out o", "mark a.obj",
+        "mark a.obj --out o --message a --fill", "mark a.obj --out o --message-hex xy", "extract",
+        "mark a.obj --out o --subscript-bits 2", "mark a.obj --out o --threads 0",
+        "extract a.obj --key-file absent.key", "mark absent.jsonl --out o",
+        "verify absent.jsonl"}) {
     const Result result = run(wrong);
     EXPECT_EQ(result.code, 2) << wrong;
     EXPECT_EQ(result.out, "") << wrong;
@@ -67,8 +68,8 @@ TEST_F(Cli, MarksExtractsAndVerifies) {
   make_sample("a.obj", 4000);
   EXPECT_EQ(run("keygen --out k.key").code, 0);
   EXPECT_EQ(run("keygen --out k.key").code, 1);  // never overwritten
-  const Result marked = run(
-      "mark a.obj --out o --message 'for Ada' --key-file k.key --records r.jsonl --json");
+  const Result marked =
+      run("mark a.obj --out o --message 'for Ada' --key-file k.key --records r.jsonl --json");
   EXPECT_EQ(marked.code, 0) << marked.err;
   EXPECT_EQ(marked.err, "");
   EXPECT_EQ(marked.out, test::read_all(folder_ / "r.jsonl"));

@@ -1,4 +1,5 @@
-// The house's arrows: cli -> manifests -> engine, and inside the engine from the whole to the parts.
+// The house's arrows: cli -> manifests -> engine, and inside the engine from the whole to the
+// parts.
 #include <algorithm>
 #include <map>
 #include <set>
@@ -56,14 +57,12 @@ TEST(Arrows, LibrariesStayInTheirRooms) {
       {"<OpenMesh/", {"engine/mesh/halfedges.h", "engine/mesh/vec3.h"}},
       {"<sodium", {"engine/message/key.cpp"}}};
   for (const char* room : {"engine", "manifests", "cli"}) {
-    for (const auto& entry :
-         fs::recursive_directory_iterator(fs::path(TRIGLYPH_SOURCE) / room)) {
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(TRIGLYPH_SOURCE) / room)) {
       if (!entry.is_regular_file()) continue;
       const std::string text = test::read_all(entry.path());
       const std::string name = entry.path().lexically_relative(TRIGLYPH_SOURCE).string();
       for (const auto& [include, files] : doors) {
-        EXPECT_TRUE(text.find("#include " + include) == std::string::npos ||
-                    files.count(name) != 0)
+        EXPECT_TRUE(text.find("#include " + include) == std::string::npos || files.count(name) != 0)
             << name << " includes " << include;
       }
     }

@@ -16,7 +16,9 @@ namespace {
 
 const Message kMessage{'o', 'w', 'n', 'e', 'r', ' ', '4', '2'};
 
-Vec3 unrounded(const Vec3& p) { return p; }
+Vec3 unrounded(const Vec3& p) {
+  return p;
+}
 
 Marking mark_ball(const MarkOptions& options = {}) {
   return mark(test::bumpy_ball().surface(), kMessage, Key::trial(), options, test::as_float, 1e-7);
@@ -47,8 +49,8 @@ TEST(Mark, MessagesOfOneTo256BytesComeBack) {
   for (const std::size_t bytes : {1, 2, 16, 64, 256}) {
     Message message(bytes);
     for (std::size_t i = 0; i < bytes; ++i) message[i] = static_cast<std::uint8_t>(37 * i + bytes);
-    const Marking marking = mark(test::bumpy_ball().surface(), message, Key::trial(), {},
-                                 test::as_float, 1e-7);
+    const Marking marking =
+        mark(test::bumpy_ball().surface(), message, Key::trial(), {}, test::as_float, 1e-7);
     EXPECT_EQ(read({marking.positions, test::bumpy_ball().mesh.triangles}).message, message);
   }
 }
@@ -61,8 +63,8 @@ TEST(Mark, SurvivesReorderingSimilarityRoundingAndCropping) {
     EXPECT_EQ(read(test::cropped_half(marked, seed)).message, kMessage) << seed;
   }
   EXPECT_EQ(read(test::with_significant_digits(marked, 6)).message, kMessage);
-  EXPECT_EQ(read(test::with_significant_digits(
-                     test::cropped_half(test::shuffled(marked, 1), 2), 6)).message,
+  EXPECT_EQ(read(test::with_significant_digits(test::cropped_half(test::shuffled(marked, 1), 2), 6))
+                .message,
             kMessage);
 }
 
@@ -129,8 +131,7 @@ TEST(Mark, FillGivesEveryUnitAPartOfItsOwn) {
   MarkOptions options;
   options.scheme_options.step = kFillStep;
   const auto& ball = test::bumpy_ball();
-  const Marking marking =
-      mark(ball.surface(), {}, Key::trial(), options, test::as_float, 1e-7);
+  const Marking marking = mark(ball.surface(), {}, Key::trial(), options, test::as_float, 1e-7);
   EXPECT_EQ(marking.words.size(), marking.units_valid);
   EXPECT_GE(marking.carriers.size(), marking.units_valid * 95 / 100);
   std::set<std::uint32_t> words;
@@ -142,7 +143,8 @@ TEST(Mark, TooSmallAndTooCoarseAreSaid) {
   const test::Solid grid(test::flat_grid(3, 3));
   EXPECT_EQ(mark(grid.surface(), kMessage, Key::trial(), {}, unrounded, 0).status,
             MarkStatus::TooSmall);
-  EXPECT_EQ(mark(grid.surface(), {}, Key::trial(), {}, unrounded, 0).status,
+  const test::Solid tetrahedron(test::tetrahedron());
+  EXPECT_EQ(mark(tetrahedron.surface(), {}, Key::trial(), {}, unrounded, 0).status,
             MarkStatus::TooSmall);
   const double step = 0.01;  // about a third of an edge
   const auto coarse = [&](const Vec3& p) {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/base/error.h"
 #include "engine/base/output_file.h"
 #include "engine/mesh/export_mesh.h"
 #include "manifests/pipeline.h"
@@ -29,20 +30,21 @@ class Collection {
  public:
   Collection() {
     const SampleShape shapes[] = {SampleShape::Closed, SampleShape::Open, SampleShape::HighGenus};
-    const FileFormat formats[] = {FileFormat::Obj,      FileFormat::Off,    FileFormat::PlyAscii,
-                                  FileFormat::PlyBig,   FileFormat::StlAscii,
-                                  FileFormat::PlyLittle, FileFormat::StlBinary};
+    const FileFormat formats[] = {FileFormat::Obj,      FileFormat::Off,      FileFormat::PlyAscii,
+                                  FileFormat::PlyBig,   FileFormat::StlAscii, FileFormat::PlyLittle,
+                                  FileFormat::StlBinary};
     const char* endings[] = {"obj", "off", "ply", "ply", "stl", "ply", "stl"};
     std::string manifest = "{\"triglyph\": 1, \"defaults\": {\"message\": \"run test\"}}\n";
     for (std::size_t i = 0; i < 7; ++i) {
       const std::string name = "in/" + std::to_string(i) + "." + endings[i];
-      save(make_sample_shape(shapes[i % 3], 2000 + 500 * i, i), folder_ / name, formats[i]);
+      save(make_sample_shape(shapes[i % 3], 6000 - 500 * i, i), folder_ / name, formats[i]);
       manifest += "{\"mesh\": \"" + name + "\"}\n";
     }
     folder_.write("in/bad.obj", "v 0 0 0\nv 1 x 0\n");
     folder_.write("in/small.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
     manifest += "{\"mesh\": \"in/bad.obj\"}\n{\"mesh\": \"in/small.off\"}\n";
-    manifest += "{\"mesh\": \"in/absent.obj\"}\n{\"mesh\": \"in/0.obj\", \"out\": \"o/again.obj\"}\n";
+    manifest +=
+        "{\"mesh\": \"in/absent.obj\"}\n{\"mesh\": \"in/0.obj\", \"out\": \"o/again.obj\"}\n";
     manifest_ = folder_.write("m.jsonl", manifest);
   }
 
@@ -51,8 +53,9 @@ class Collection {
     std::vector<Record> records;
     const std::atomic<bool> stop{false};
     with_threads(options.threads, [&] {
-      run_jobs(jobs, Key::trial(), options,
-               [&](const Record& record) { records.push_back(record); }, stop);
+      run_jobs(
+          jobs, Key::trial(), options, [&](const Record& record) { records.push_back(record); },
+          stop);
     });
     return records;
   }
@@ -118,14 +121,15 @@ TEST(RunJobs, StopsAtAnInterruptWithWholeFilesOnly) {
   std::size_t count = 0;
   RunOptions options;
   options.memory_bytes = 1;  // one mesh at a time
-  run_jobs(jobs, Key::trial(), options,
-           [&](const Record& record) {
-             if (record.status == Status::Marked) {
-               (void)extract_file(record.job.out, Key::trial(), {});
-             }
-             stop = ++count >= 2;
-           },
-           stop);
+  run_jobs(
+      jobs, Key::trial(), options,
+      [&](const Record& record) {
+        if (record.status == Status::Marked) {
+          (void)extract_file(record.job.out, Key::trial(), {});
+        }
+        stop = ++count >= 2;
+      },
+      stop);
   std::size_t files = 0;
   for (const auto& entry : fs::directory_iterator(collection.folder() / "out/in")) {
     EXPECT_EQ(entry.path().filename().string().front() == '.', false);
@@ -175,7 +179,8 @@ TEST(VerifyFile, KnowsAFilledMesh) {
   MeshList jobs({collection.folder() / "in/0.obj"}, settings, collection.folder() / "fill");
   std::vector<Record> records;
   const std::atomic<bool> stop{false};
-  run_jobs(jobs, Key::trial(), {}, [&](const Record& record) { records.push_back(record); }, stop);
+  run_jobs(
+      jobs, Key::trial(), {}, [&](const Record& record) { records.push_back(record); }, stop);
   ASSERT_EQ(records.size(), 1U);
   ASSERT_EQ(records[0].status, Status::Marked) << records[0].error;
   EXPECT_EQ(records[0].parts, records[0].units_valid);

@@ -108,8 +108,8 @@ TEST(Tsq, ReadsTheSameUnderAnySimilarityAndOrder) {
   const auto& ball = test::bumpy_ball();
   const Chosen chosen = choose(scheme, ball.surface());
   const auto words = code().fill_words(256);
-  const Embedding embedding = scheme.embed(
-      ball.surface(), chosen.units, random_placements(chosen, words.size()), words);
+  const Embedding embedding =
+      scheme.embed(ball.surface(), chosen.units, random_placements(chosen, words.size()), words);
   const auto good_words = [&](const Mesh& mesh) {
     std::multiset<std::pair<std::uint32_t, std::uint32_t>> found;
     const test::Solid solid(mesh);
@@ -163,8 +163,8 @@ TEST(Tsq, ResultsDoNotDependOnThreads) {
   test::expect_same_for_any_threads([&] {
     const Chosen chosen = choose(scheme, ball.surface());
     const auto costs = scheme.costs(ball.surface(), chosen.units, chosen.valid, words);
-    const auto embedding = scheme.embed(ball.surface(), chosen.units,
-                                        random_placements(chosen, words.size()), words);
+    const auto embedding =
+        scheme.embed(ball.surface(), chosen.units, random_placements(chosen, words.size()), words);
     return std::make_tuple(chosen.units.anchors, chosen.units.moved.points, costs.values,
                            embedding.positions, embedding.failed);
   });

@@ -1,5 +1,5 @@
-// Runs the same work with different numbers of threads, for tests that its result does not depend on
-// them. TBB arenas, since a global limit would leave the arena as large as the machine.
+// Runs the same work with different numbers of threads, for tests that its result does not depend
+// on them. TBB arenas, since a global limit would leave the arena as large as the machine.
 #pragma once
 
 #include <array>

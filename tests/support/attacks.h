@@ -65,7 +65,8 @@ inline Mesh moved_rigidly_and_scaled(const Mesh& mesh, std::uint64_t seed) {
   return result;
 }
 
-// Keeps the faces whose centroid lies on one side of a plane with random direction that halves them.
+// Keeps the faces whose centroid lies on one side of a plane with random direction that halves
+// them.
 inline Mesh cropped_half(const Mesh& mesh, std::uint64_t seed) {
   const Vec3 normal(random_unit(seed, 0, 0) - 0.5, random_unit(seed, 0, 1) - 0.5,
                     random_unit(seed, 0, 2) - 0.5);
