@@ -28,6 +28,7 @@ struct MarkArguments {
   std::string assign = "bottleneck";
   std::string cost = "displacement";
   std::uint32_t redundancy = MarkOptions{}.redundancy;
+  double max_move_percent = 100 * MarkOptions{}.max_move_rel_diag;
   std::filesystem::path records;
   bool json = false;
   SchemeArguments scheme;
@@ -45,6 +46,7 @@ struct MarkArguments {
     settings.options.assign = assign_method(assign);
     settings.options.scheme_options.cost = cost_function(cost);
     settings.options.redundancy = redundancy;
+    settings.options.max_move_rel_diag = max_move_percent / 100;
     // fails early on a message that cannot be, before any mesh is opened
     if (!fill) (void)WordCode(Key::trial(), settings.options.format).words_of(settings.message);
     return settings;
@@ -169,6 +171,11 @@ void add_mark_verb(CLI::App& app, Action& action) {
       ->capture_default_str();
   verb->add_option("--redundancy", arguments->redundancy,
                    "Units wanted for each part; 0: as many as there are")
+      ->capture_default_str();
+  verb->add_option("--max-move", arguments->max_move_percent,
+                   "Farthest move of a point in percent of the diagonal that a repeat is worth; 0: "
+                   "any")
+      ->check(CLI::Range(0.0, 100.0))
       ->capture_default_str();
   verb->add_option("--records", arguments->records, "Write one JSON record a mesh to this file")
       ->type_name("FILE");

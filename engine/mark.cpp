@@ -4,76 +4,44 @@
 #include <bit>
 #include <numeric>
 
+#include "engine/assign_words.h"
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
+#include "engine/metric/hausdorff.h"
 #include "engine/settle.h"
 
 namespace triglyph {
 namespace {
 
-// Pairs of unit and word that one assignment looks at: 256 MB of costs. More units than fit are
-// dealt into blocks, each with its share of the demand; beyond that size the optimum is one of
-// blocks.
-constexpr std::size_t kMaxPairs = std::size_t{1} << 26;
-
-Assignment assign(const CostMatrix& costs, std::span<const std::uint32_t> demand,
-                  AssignMethod method) {
-  switch (method) {
-    case AssignMethod::Sequential:
-      return assign_sequential(costs, demand);
-    case AssignMethod::Bottleneck:
-      return assign_bottleneck(costs, demand);
-    case AssignMethod::Sum:
-      return assign_least_sum(costs, demand);
-  }
-  throw Error(ErrorCode::Usage, {}, "", "unknown assignment");
-}
-
-// How many units each part wants: the redundancy, or what the units allow, as evenly as can be.
-std::vector<std::uint32_t> share_demand(std::size_t units, std::size_t parts,
-                                        std::uint32_t redundancy) {
-  const std::size_t wanted =
-      redundancy == 0 ? units : std::min<std::size_t>(units, redundancy * parts);
-  std::vector<std::uint32_t> demand(parts);
-  for (std::size_t part = 0; part < parts; ++part) {
-    demand[part] = static_cast<std::uint32_t>(wanted / parts + (part < wanted % parts ? 1 : 0));
-  }
-  return demand;
-}
+// How often words that could not be embedded are dealt out anew before the mesh is taken as it is.
+constexpr int kMaxRounds = 16;
 
 int fill_subscript_bits(std::size_t units) {
   return std::clamp(static_cast<int>(std::bit_width(units - 1)), 1, kMaxFillSubscriptBits);
 }
 
-// Which word every valid unit carries, block by block.
-std::vector<Placement> assign_words(const Surface& surface, const Scheme& scheme,
-                                    const UnitSet& units, std::span<const std::uint32_t> valid,
-                                    const MarkOptions& options, std::uint32_t redundancy,
-                                    Marking& marking) {
-  const std::size_t words = marking.words.size();
-  const std::vector<std::uint32_t> demand = share_demand(valid.size(), words, redundancy);
-  const std::size_t blocks = (valid.size() * words + kMaxPairs - 1) / kMaxPairs;
-  std::vector<Placement> placements;
-  for (std::size_t block = 0; block < blocks; ++block) {
-    std::vector<std::uint32_t> chosen;
-    for (std::size_t i = block; i < valid.size(); i += blocks) chosen.push_back(valid[i]);
-    std::vector<std::uint32_t> share(words);
-    for (std::size_t word = 0; word < words; ++word) {
-      const auto part = [&](std::size_t b) { return demand[word] * b / blocks; };
-      share[word] = static_cast<std::uint32_t>(part(block + 1) - part(block));
+// Placements that did not survive, or none if every part kept at least half of its units.
+std::vector<Placement> sorely_missed(std::span<const Placement> placements, const UnitSet& units,
+                                     const Marking& marking) {
+  std::vector<std::uint32_t> wanted(marking.words.size(), 0);
+  std::vector<std::uint32_t> kept(marking.words.size(), 0);
+  for (const Carrier& carrier : marking.carriers) ++kept[carrier.word];
+  std::vector<Placement> missed;
+  auto carrier = marking.carriers.begin();
+  for (const Placement& placement : placements) {
+    ++wanted[placement.word];
+    const bool stands =
+        carrier != marking.carriers.end() && carrier->anchor == units.anchors[placement.unit];
+    if (stands) {
+      ++carrier;
+    } else {
+      missed.push_back(placement);
     }
-    const CostMatrix costs = scheme.costs(surface, units, chosen, marking.words);
-    const Assignment assignment = assign(costs, share, options.assign);
-    for (std::size_t i = 0; i < chosen.size(); ++i) {
-      if (assignment.word_of_unit[i] == kNoWord) continue;
-      placements.push_back({chosen[i], assignment.word_of_unit[i]});
-    }
-    marking.cost_max = std::max(marking.cost_max, assignment.max_cost);
-    marking.cost_sum += assignment.sum_cost;
   }
-  std::sort(placements.begin(), placements.end(),
-            [](const Placement& a, const Placement& b) { return a.unit < b.unit; });
-  return placements;
+  for (std::size_t word = 0; word < wanted.size(); ++word) {
+    if (2 * kept[word] < std::max(wanted[word], 1U)) return missed;
+  }
+  return {};
 }
 
 double mean_edge(const Mesh& mesh) {
@@ -114,7 +82,7 @@ AssignMethod assign_method(const std::string& name) {
 }
 
 Marking mark(const Surface& surface, std::span<const std::uint8_t> message, const Key& key,
-             const MarkOptions& options, const Rounding& round, double number_step) {
+             const MarkOptions& options, const Rounding& rounding, double number_step) {
   const bool fill = message.empty();
   Marking marking;
   marking.format = options.format;
@@ -145,13 +113,22 @@ Marking mark(const Surface& surface, std::span<const std::uint8_t> message, cons
     return marking;
   }
 
-  // step 2: which word each unit carries
+  // step 2: which word each unit carries; what proves impossible is dealt out anew
   const auto scheme = scheme_for(code);
-  const std::vector<Placement> placements =
-      assign_words(surface, *scheme, units, valid, options, fill ? 0 : options.redundancy, marking);
-  marking.units_assigned = static_cast<std::uint32_t>(placements.size());
-
-  settle(surface, *scheme, units, placements, round, marking);
+  const double limit =
+      fill ? 0 : options.max_move_rel_diag * box_diagonal(surface.mesh.positions);
+  WordAssigner assigner(surface, *scheme, units, valid, marking.words, options, limit);
+  const bool once = fill || options.assign == AssignMethod::Sequential;
+  for (int round = 0; round < (once ? 1 : kMaxRounds); ++round) {
+    const WordPlan plan = assigner.plan(fill ? 0 : options.redundancy);
+    marking.cost_max = plan.cost_max;
+    marking.cost_sum = plan.cost_sum;
+    marking.units_assigned = static_cast<std::uint32_t>(plan.placements.size());
+    settle(surface, *scheme, units, plan.placements, rounding, marking);
+    const std::vector<Placement> missed = sorely_missed(plan.placements, units, marking);
+    if (missed.empty()) break;
+    for (const Placement& placement : missed) assigner.rule_out(placement);
+  }
   const bool mostly_lost = 2 * marking.units_dropped > marking.units_assigned;
   const double cell = options.scheme_options.step * mean_edge(surface.mesh);
   if (mostly_lost && number_step > 0.05 * cell) marking.status = MarkStatus::TooCoarse;

@@ -35,6 +35,9 @@ struct MarkOptions {
   LayoutMethod layout = LayoutMethod::MinDegree;
   AssignMethod assign = AssignMethod::Bottleneck;
   std::uint32_t redundancy = 32;  // wanted units a part; 0: as many as there are
+  // A unit that would move a point farther than this share of the bounding box's diagonal is used
+  // only if its part has fewer than kMinRedundancy others; 0: no limit. Not for sequential or fill.
+  double max_move_rel_diag = 0.001;
 };
 
 // Options for the paper's experiment, in which every unit carries a part of its own: as many
@@ -81,7 +84,7 @@ using Rounding = std::function<Vec3(const Vec3&)>;
 // the output can hold, model units, and explains a failure.
 // O(triangles + units * parts) and the assignment.
 [[nodiscard]] Marking mark(const Surface& surface, std::span<const std::uint8_t> message,
-                           const Key& key, const MarkOptions& options, const Rounding& round,
+                           const Key& key, const MarkOptions& options, const Rounding& rounding,
                            double number_step);
 
 }  // namespace triglyph

@@ -93,6 +93,7 @@ void settle(const Surface& surface, const Scheme& scheme, const UnitSet& units,
             std::span<const Placement> placements, const Rounding& round, Marking& marking) {
   Embedding embedding = scheme.embed(surface, units, placements, marking.words);
   marking.positions = std::move(embedding.positions);
+  marking.carriers.clear();
   Placed placed(surface, units, placements, marking.positions);
   for (const std::uint32_t failed : embedding.failed) placed.take_back(failed);
   parallel_for(

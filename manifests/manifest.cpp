@@ -54,6 +54,8 @@ bool apply(const std::string& key, const Json& value, JobSettings& settings) {
     options.scheme_options.cost = cost_function(value.get<std::string>());
   } else if (key == "redundancy") {
     options.redundancy = value.get<std::uint32_t>();
+  } else if (key == "max_move") {
+    options.max_move_rel_diag = value.get<double>();
   } else if (key == "marker_bits") {
     options.format.marker_bits = value.get<int>();
   } else if (key == "subscript_bits") {

@@ -38,6 +38,7 @@ Json options_of(const Record& record) {
           {"assign", name_of(options.assign)},
           {"cost", name_of(options.scheme_options.cost)},
           {"redundancy", options.redundancy},
+          {"max_move_rel_diag", options.max_move_rel_diag},
           {"marker_bits", record.format.marker_bits},
           {"subscript_bits", record.format.subscript_bits},
           {"part_bits", record.format.part_bits},
