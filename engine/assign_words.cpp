@@ -55,9 +55,7 @@ WordAssigner::WordAssigner(const Surface& surface, const Scheme& scheme, const U
 
 WordPlan WordAssigner::plan(std::uint32_t redundancy) {
   WordPlan best = solve(redundancy);
-  const bool is_limited =
-      max_cost_ > 0 && redundancy != 0 && options_.assign != AssignMethod::Sequential;
-  if (!is_limited || best.cost_max <= max_cost_) return best;
+  if (!is_limited() || redundancy == 0 || best.cost_max <= max_cost_) return best;
   // the greatest redundancy that keeps within the limit, by bisection; kMinRedundancy in any case
   const auto possible = static_cast<std::uint32_t>((valid_.size() - 1) / words_.size() + 1);
   std::uint32_t too_many = std::min(redundancy, possible);
@@ -108,8 +106,14 @@ std::vector<std::uint32_t> WordAssigner::block_units(std::size_t block) const {
 
 const CostMatrix& WordAssigner::block_costs(std::size_t block,
                                             std::span<const std::uint32_t> chosen) {
-  if (costs_of_block_ != block) costs_ = scheme_.costs(surface_, units_, chosen, words_);
-  costs_of_block_ = block;
+  if (costs_of_block_ != block) {
+    costs_ = scheme_.costs(surface_, units_, chosen, words_);
+    costs_of_block_ = block;
+    const auto visible = static_cast<float>(kVisibleMove * max_cost_);
+    if (is_limited()) {
+      for (float& cost : costs_.values) cost = cost > visible ? kInfeasible : cost;
+    }
+  }
   for (const auto& [unit, word] : ruled_out_) {
     const auto at = std::lower_bound(chosen.begin(), chosen.end(), unit);
     if (at == chosen.end() || *at != unit) continue;

@@ -12,9 +12,12 @@
 
 namespace triglyph {
 
-// Every part gets at least this many units where there are enough, whatever they cost; more only as
-// long as no point moves farther than MarkOptions::max_move_rel_diag.
+// Every part gets at least this many units where there are enough; more only as long as no point
+// moves farther than MarkOptions::max_move_rel_diag.
 inline constexpr std::uint32_t kMinRedundancy = 4;
+
+// A move this many times the limit would be seen: such a pair is infeasible.
+inline constexpr double kVisibleMove = 10;
 
 struct WordPlan {
   std::vector<Placement> placements;  // by ascending unit
@@ -37,6 +40,9 @@ class WordAssigner {
   void rule_out(const Placement& placement) { ruled_out_.insert({placement.unit, placement.word}); }
 
  private:
+  [[nodiscard]] bool is_limited() const {
+    return max_cost_ > 0 && options_.assign != AssignMethod::Sequential;
+  }
   [[nodiscard]] WordPlan solve(std::uint32_t redundancy);
   [[nodiscard]] std::vector<std::uint32_t> block_units(std::size_t block) const;
   [[nodiscard]] const CostMatrix& block_costs(std::size_t block,

@@ -44,6 +44,12 @@ std::vector<Placement> sorely_missed(std::span<const Placement> placements, cons
   return {};
 }
 
+std::uint32_t count_parts(const Marking& marking) {
+  std::vector<char> carried(marking.words.size(), 0);
+  for (const Carrier& carrier : marking.carriers) carried[carrier.word] = 1;
+  return static_cast<std::uint32_t>(std::count(carried.begin(), carried.end(), 1));
+}
+
 double mean_edge(const Mesh& mesh) {
   const double total = parallel_reduce(
       mesh.triangles.size(), 0.0,
@@ -129,6 +135,8 @@ Marking mark(const Surface& surface, std::span<const std::uint8_t> message, cons
     if (missed.empty()) break;
     for (const Placement& placement : missed) assigner.rule_out(placement);
   }
+  marking.parts_carried = count_parts(marking);
+  if (!fill && marking.parts_carried < marking.words.size()) marking.status = MarkStatus::TooSmall;
   const bool mostly_lost = 2 * marking.units_dropped > marking.units_assigned;
   const double cell = options.scheme_options.step * mean_edge(surface.mesh);
   if (mostly_lost && number_step > 0.05 * cell) marking.status = MarkStatus::TooCoarse;

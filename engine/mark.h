@@ -36,7 +36,8 @@ struct MarkOptions {
   AssignMethod assign = AssignMethod::Bottleneck;
   std::uint32_t redundancy = 32;  // wanted units a part; 0: as many as there are
   // A unit that would move a point farther than this share of the bounding box's diagonal is used
-  // only if its part has fewer than kMinRedundancy others; 0: no limit. Not for sequential or fill.
+  // only if its part has fewer than kMinRedundancy others, and never if it is ten times as far.
+  // 0: no limit. Not for sequential or fill.
   double max_move_rel_diag = 0.001;
 };
 
@@ -48,7 +49,7 @@ inline constexpr int kMaxFillSubscriptBits = 13;
 
 enum class MarkStatus {
   Marked,
-  TooSmall,   // fewer valid units than parts
+  TooSmall,   // some part found no unit that can carry it
   TooCoarse,  // the file's numbers are too coarse to hold the cells
 };
 
@@ -66,6 +67,7 @@ struct Marking {
   std::vector<Word> words;      // one a part
   WordFormat format;            // of the words; --fill chooses the subscript bits
   std::vector<Carrier> carriers;
+  std::uint32_t parts_carried = 0;  // parts with at least one carrier
   std::uint32_t candidates = 0;
   std::uint32_t units_valid = 0;     // after layout
   std::uint32_t units_bound = 0;     // no layout has more

@@ -124,8 +124,9 @@ void mark(Task& task, const Key& key) noexcept {
     const std::string name = record.job.mesh.string() + ": ";
     if (task.marking.status == MarkStatus::TooSmall) {
       end(task, Status::TooSmall,
-          name + std::to_string(record.units_valid) + " units are too few for " +
-              std::to_string(std::max(record.parts, 1U)) + " parts");
+          name + std::to_string(record.units_valid) + " units carry " +
+              std::to_string(task.marking.parts_carried) + " of the message's " +
+              std::to_string(record.parts) + " parts");
     } else if (task.marking.status == MarkStatus::TooCoarse) {
       end(task, Status::TooCoarse,
           name + "numbers " + std::to_string(task.file->number_step()) +

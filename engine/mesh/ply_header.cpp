@@ -85,7 +85,7 @@ class HeaderReader {
     const std::string_view text(source_.bytes.data(), source_.bytes.size());
     const std::size_t end = text.find('\n', at_);
     const std::string_view line = text.substr(at_, end - at_);
-    const auto words = split(line);
+    auto words = split(line);
     if (end == std::string_view::npos) {
       const bool is_last = !words.empty() && words[0] == "end_header";
       if (!is_last) fail("the header has no end_header");
