@@ -1,8 +1,7 @@
 // This work is based on:
-//  - E. W. Dijkstra: A note on two problems in connexion with graphs, 1959; over reduced costs as
-//  in
-//    R. Jonker, A. Volgenant: A shortest augmenting path algorithm for dense and sparse linear
-//    assignment problems, 1987.
+//  - E. W. Dijkstra: A note on two problems in connexion with graphs, 1959.
+//  - R. Jonker, A. Volgenant: A shortest augmenting path algorithm for dense and sparse linear
+//    assignment problems, 1987 (the search runs over reduced costs).
 // Deviation: the nodes are words, not units. The units a word holds are all at its own distance, so
 // the search is as large as the number of words, however many units there are.
 #include "engine/assignment/path_search.h"
@@ -62,8 +61,9 @@ void PathSearch::visit(std::uint32_t word) {
     follow(word, pair.unit, std::max(distance, base + (pair.cost + state_.prices[pair.unit])));
   }
   const double renewal = std::max(distance, base + w.list.bound);
-  if (renewal < end_.distance)
+  if (renewal < end_.distance) {
     push(renewal, static_cast<std::uint32_t>(state_.words.size()) + word);
+  }
   if (state_.reserve_size == 0) return;
   const double next = std::max(distance, base + state_.reserve_price);
   if (state_.reserve_left > 0 && next < end_.distance) end_ = {next, word, kNobody};

@@ -122,8 +122,9 @@ void match_ties(TransportState& state) {
   for (std::uint32_t unit = 0; unit < graph.units(); ++unit) {
     if (matching.word_of_unit[unit] != kNoWord) state.give(unit, matching.word_of_unit[unit]);
   }
-  for (std::size_t k = 0; k < state.words.size(); ++k)
+  for (std::size_t k = 0; k < state.words.size(); ++k) {
     state.words[k].deficit = matching.unserved[k];
+  }
 }
 
 }  // namespace

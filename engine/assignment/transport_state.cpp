@@ -26,9 +26,10 @@ TransportState::TransportState(const TransportProblem& problem) : limit(problem.
       [&](std::size_t k) {
         TransportWord& word = words[k];
         renew_list(static_cast<std::uint32_t>(k));
-        word.value = reserve_size > 0 ? reserve_price : kInfinity;
+        word.value = kInfinity;
+        if (reserve_size > 0) word.value = reserve_price;
         for (const Candidate& pair : word.list.pairs) {
-          word.value = std::min(word.value, pair.cost + prices[pair.unit]);
+          word.value = std::min(word.value, double{pair.cost} + prices[pair.unit]);
         }
       },
       4);
@@ -88,10 +89,10 @@ void TransportState::set_first_prices(const TransportProblem& problem) {
     std::nth_element(ordered.begin(), nth, ordered.end());
     highest = std::min(limit, *nth);
   }
-  prices.resize(least.size());
+  prices.assign(least.size(), kInfinity);
   for (std::size_t unit = 0; unit < least.size(); ++unit) {
-    const double start = -static_cast<double>(std::min(least[unit], highest));
-    prices[unit] = problem.is_unit_open[unit] != 0 ? start : kInfinity;
+    if (problem.is_unit_open[unit] == 0) continue;
+    prices[unit] = -static_cast<double>(std::min(least[unit], highest));
   }
 }
 

@@ -28,13 +28,17 @@ constexpr std::uint32_t kNoPoint = 0xffffffff;
 constexpr double kJitter = 0.2;  // of a cell, along each axis: below 0.25 no triangle turns over
 constexpr std::size_t kRowsPerTask = 16;
 
-enum Stream : std::uint64_t { kJitterStream = 1, kDiagonalStream, kWaveStream, kHoleStream };
+// Streams of random numbers.
+constexpr std::uint64_t kJitterStream = 1;
+constexpr std::uint64_t kDiagonalStream = 2;
+constexpr std::uint64_t kWaveStream = 3;
+constexpr std::uint64_t kHoleStream = 4;
 
 // Holes a side of the slab: grows with the seed, where the mesh is large enough to show them.
 std::uint32_t holes_a_side(SampleShape shape, std::size_t triangles, std::uint64_t seed) {
   if (shape != SampleShape::HighGenus) return 0;
   auto holes = static_cast<std::uint32_t>(2 + random_bits(seed, kHoleStream, 0) % 4);
-  while (holes > 1 && triangles < 1000 * holes * holes) --holes;
+  while (holes > 1 && triangles < std::size_t{1000} * holes * holes) --holes;
   return holes;
 }
 
