@@ -36,7 +36,8 @@ struct Assignment {
 // As many units as possible, among those answers the least maximum, among those the least sum:
 // Wang & Hu 2010, equation 3. The sum is least up to the rounding of double arithmetic (exact for
 // costs that are integers); number of units and maximum are always exact.
-// O(units * words) a sweep, a handful of sweeps in practice; worst case cubic.
+// O(units * words) a sweep, a handful of sweeps in practice. note: worst case cubic, reached where
+// costs are a product of a unit's and a word's factor, or nearly tie across most words.
 [[nodiscard]] Assignment assign_bottleneck(const CostMatrix& costs,
                                            std::span<const std::uint32_t> demand);
 

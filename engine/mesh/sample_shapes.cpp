@@ -28,13 +28,17 @@ constexpr std::uint32_t kNoPoint = 0xffffffff;
 constexpr double kJitter = 0.2;  // of a cell, along each axis: below 0.25 no triangle turns over
 constexpr std::size_t kRowsPerTask = 16;
 
-enum Stream : std::uint64_t { kJitterStream = 1, kDiagonalStream, kWaveStream, kHoleStream };
+// Streams of random numbers.
+constexpr std::uint64_t kJitterStream = 1;
+constexpr std::uint64_t kDiagonalStream = 2;
+constexpr std::uint64_t kWaveStream = 3;
+constexpr std::uint64_t kHoleStream = 4;
 
 // Holes a side of the slab: grows with the seed, where the mesh is large enough to show them.
 std::uint32_t holes_a_side(SampleShape shape, std::size_t triangles, std::uint64_t seed) {
   if (shape != SampleShape::HighGenus) return 0;
   auto holes = static_cast<std::uint32_t>(2 + random_bits(seed, kHoleStream, 0) % 4);
-  while (holes > 1 && triangles < 1000 * holes * holes) --holes;
+  while (holes > 1 && triangles < std::size_t{1000} * holes * holes) --holes;
   return holes;
 }
 
@@ -171,8 +175,8 @@ Numbering number_points(const Plan& plan) {
   return numbers;
 }
 
-// A one-to-one map of space: each wave moves points along a direction by a sine of the place, and
-// the slopes of all waves together stay below 1.
+// A one-to-one map of space: one wave after the other moves points along its crests, by a sine of
+// the place across them. Such a shear can be undone whatever its slope, and keeps volumes.
 class Bumps {
  public:
   explicit Bumps(std::uint64_t seed) {
@@ -187,8 +191,10 @@ class Bumps {
     double wavelength = kLongest;
     for (Wave& wave : waves_) {
       const double frequency = 2 * std::numbers::pi / wavelength;
-      wave.frequency = draw_direction() * frequency;
-      wave.shift = draw_direction() * (kTotalSlope / kWaves / frequency);
+      const Vec3 across = draw_direction();
+      const Vec3 along = cross(across, draw_direction());
+      wave.frequency = across * frequency;
+      wave.shift = along * (kSlope / frequency / along.norm());
       wave.phase = 2 * std::numbers::pi * draw();
       wavelength *= kRatio;
     }
@@ -197,16 +203,16 @@ class Bumps {
   [[nodiscard]] Vec3 apply(const Vec3& place) const {
     Vec3 moved = place;
     for (const Wave& wave : waves_) {
-      moved += wave.shift * std::sin(dot(wave.frequency, place) + wave.phase);
+      moved += wave.shift * std::sin(dot(wave.frequency, moved) + wave.phase);
     }
     return moved;
   }
 
  private:
   static constexpr int kWaves = 9;
-  static constexpr double kLongest = 2.2;     // about the size of the shape
-  static constexpr double kRatio = 0.75;      // of successive wavelengths: the last is 0.22
-  static constexpr double kTotalSlope = 0.9;  // below 1
+  static constexpr double kLongest = 2.2;  // about the size of the shape
+  static constexpr double kRatio = 0.75;   // of successive wavelengths: the last is 0.22
+  static constexpr double kSlope = 0.3;    // of every wave: areas then vary by a factor of 2 or so
 
   struct Wave {
     Vec3 frequency;
