@@ -139,4 +139,4 @@ BENCHMARK(BM_RewriteBunnyOpenMesh)->UseRealTime()->Unit(benchmark::kMillisecond)
 
 }  // namespace
 
-BENCHMARK_MAIN();
+

@@ -73,21 +73,20 @@ struct SpatialIndex::Scene {
 
   void attach_triangles() {
     RTCGeometry geometry = rtcNewGeometry(shared_device(), RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* points = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
-                                                               RTC_FORMAT_FLOAT3, 3 * sizeof(float),
-                                                               positions.size()));
+    // each triangle with corners of its own: a few triangles of a large mesh stay a few
+    auto* points = static_cast<float*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                3 * sizeof(float), 3 * triangles.size()));
     auto* corners = static_cast<std::uint32_t*>(
         rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                 3 * sizeof(std::uint32_t), triangles.size()));
     check(points != nullptr && corners != nullptr, "Embree has no memory for the triangles");
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-      const Vec3 point = (positions[i] - centre) * scale;
+    for (std::size_t i = 0; i < 3 * triangles.size(); ++i) {
+      const Vec3 point = (positions[triangles[i / 3][i % 3]] - centre) * scale;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         points[3 * i + axis] = static_cast<float>(point[axis]);
       }
-    }
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-      std::copy(triangles[i].begin(), triangles[i].end(), corners + 3 * i);
+      corners[i] = static_cast<std::uint32_t>(i);
     }
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(handle, geometry);

@@ -10,6 +10,7 @@
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
 #include "engine/mesh/spatial_index.h"
+#include "engine/metric/nearby_triangles.h"
 
 namespace triglyph {
 namespace {
@@ -20,77 +21,76 @@ struct Sample {
   double reach;
 };
 
-constexpr std::size_t kSamplesPerRound = 8192;
+constexpr std::size_t kSamplesPerRound = 4096;
 
-// The farthest of the samples from the surface. Samples with the greatest reach go first; a round
-// whose reaches are all within the farthest yet cannot change the answer, and the rounds are fixed,
-// so neither can the threads.
-double farthest_sample(std::vector<Sample>& samples, const SpatialIndex& surface) {
-  std::stable_sort(samples.begin(), samples.end(),
-                   [](const Sample& a, const Sample& b) { return a.reach > b.reach; });
+// The farthest of the samples from the surface. Those with the greatest reach go first; a sample whose
+// reach is within the farthest yet cannot change the answer, so the order does not matter to it.
+double farthest_sample(std::vector<Sample> samples, const SpatialIndex& surface) {
+  const auto greater = [](const Sample& a, const Sample& b) { return a.reach > b.reach; };
   double farthest = 0;
   std::vector<double> distances(kSamplesPerRound);
-  for (std::size_t begin = 0; begin < samples.size(); begin += kSamplesPerRound) {
-    if (samples[begin].reach <= farthest) break;
-    const std::size_t count = std::min(kSamplesPerRound, samples.size() - begin);
+  while (!samples.empty()) {
+    const std::size_t count = std::min(kSamplesPerRound, samples.size());
+    std::nth_element(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(count - 1),
+                     samples.end(), greater);
     parallel_for(
         count,
         [&](std::size_t i) {
-          const Sample& sample = samples[begin + i];
-          distances[i] =
-              sample.reach <= farthest ? 0 : surface.closest(sample.point, sample.reach).distance;
+          const double distance = surface.closest(samples[i].point, samples[i].reach).distance;
+          distances[i] = std::min(distance, samples[i].reach);
         },
         64);
-    for (std::size_t i = 0; i < count; ++i) {
-      const double reach = samples[begin + i].reach;
-      farthest = std::max(farthest, std::min(distances[i], reach));
-    }
+    farthest = std::max(farthest, *std::max_element(distances.begin(),
+                                                    distances.begin() +
+                                                        static_cast<std::ptrdiff_t>(count)));
+    samples.erase(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(count));
+    std::erase_if(samples, [&](const Sample& sample) { return sample.reach <= farthest; });
   }
   return farthest;
 }
 
-// Corners, edge midpoints and centroid as weights of the triangle's corners; points and edges are
-// shared by triangles and come once for each, which costs time but changes nothing.
-constexpr double kThird = 1.0 / 3;
-constexpr std::array<std::array<double, 3>, 7> kWeights{{{1, 0, 0},
-                                                         {0, 1, 0},
-                                                         {0, 0, 1},
-                                                         {0.5, 0.5, 0},
-                                                         {0, 0.5, 0.5},
-                                                         {0.5, 0, 0.5},
-                                                         {kThird, kThird, kThird}}};
+// Samples of the given triangles: each point once, and the midpoints of the edges and the centroid of
+// every triangle. make(blend) makes a sample of a function that blends positions.
+template <typename Make>
+std::vector<Sample> take_samples(std::span<const Triangle> triangles, const Make& make) {
+  std::vector<std::uint32_t> points;
+  points.reserve(3 * triangles.size());
+  for (const Triangle& triangle : triangles) {
+    points.insert(points.end(), triangle.begin(), triangle.end());
+  }
+  std::sort(points.begin(), points.end());
+  points.erase(std::unique(points.begin(), points.end()), points.end());
 
-Vec3 blend(const Triangle& triangle, std::span<const Vec3> positions,
-           const std::array<double, 3>& weights) {
-  return positions[triangle[0]] * weights[0] + positions[triangle[1]] * weights[1] +
-         positions[triangle[2]] * weights[2];
+  using Positions = std::span<const Vec3>;
+  std::vector<Sample> samples;
+  samples.reserve(points.size() + 4 * triangles.size());
+  for (const std::uint32_t point : points) {
+    samples.push_back(make([&](Positions at) { return at[point]; }));
+  }
+  for (const Triangle& t : triangles) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      samples.push_back(make([&](Positions at) { return (at[t[i]] + at[t[(i + 1) % 3]]) / 2; }));
+    }
+    samples.push_back(make([&](Positions at) { return (at[t[0]] + at[t[1]] + at[t[2]]) / 3; }));
+  }
+  return samples;
 }
 
-// Samples of the moved triangles at `here`, each at most its own displacement from `there`.
+// Each sample is at most its own displacement from the other surface.
 std::vector<Sample> samples_of_move(std::span<const Triangle> moved, std::span<const Vec3> here,
                                     std::span<const Vec3> there) {
-  std::vector<Sample> samples;
-  samples.reserve(kWeights.size() * moved.size());
-  for (const Triangle& triangle : moved) {
-    for (const auto& weights : kWeights) {
-      const Vec3 point = blend(triangle, here, weights);
-      const double reach = (point - blend(triangle, there, weights)).norm();
-      if (reach > 0) samples.push_back({point, reach});
-    }
-  }
+  std::vector<Sample> samples = take_samples(moved, [&](const auto& blend) {
+    const Vec3 point = blend(here);
+    return Sample{point, (point - blend(there)).norm()};
+  });
+  std::erase_if(samples, [](const Sample& sample) { return sample.reach == 0; });
   return samples;
 }
 
 std::vector<Sample> samples_of(const Mesh& mesh) {
-  std::vector<Sample> samples;
-  samples.reserve(kWeights.size() * mesh.triangles.size());
-  for (const Triangle& triangle : mesh.triangles) {
-    for (const auto& weights : kWeights) {
-      samples.push_back(
-          {blend(triangle, mesh.positions, weights), std::numeric_limits<double>::infinity()});
-    }
-  }
-  return samples;
+  return take_samples(mesh.triangles, [&](const auto& blend) {
+    return Sample{blend(mesh.positions), std::numeric_limits<double>::infinity()};
+  });
 }
 
 }  // namespace
@@ -105,10 +105,10 @@ HausdorffDistance hausdorff_of_move(std::span<const Triangle> triangles,
     if (!stays) moved.push_back(triangle);
   }
   if (moved.empty()) return {};
+  const std::vector<Triangle> nearby = nearby_triangles(triangles, moved, before, after);
   HausdorffDistance distance;
   const auto one_way = [&](std::span<const Vec3> here, std::span<const Vec3> there) {
-    std::vector<Sample> samples = samples_of_move(moved, here, there);
-    return farthest_sample(samples, SpatialIndex(there, triangles));
+    return farthest_sample(samples_of_move(moved, here, there), SpatialIndex(there, nearby));
   };
   distance.forward = one_way(before, after);
   distance.backward = one_way(after, before);
@@ -120,8 +120,7 @@ HausdorffDistance hausdorff(const Mesh& first, const Mesh& second) {
     throw Error(ErrorCode::Usage, {}, "", "a mesh without faces has no distance to another");
   }
   const auto one_way = [](const Mesh& from, const Mesh& to) {
-    std::vector<Sample> samples = samples_of(from);
-    return farthest_sample(samples, SpatialIndex(to.positions, to.triangles));
+    return farthest_sample(samples_of(from), SpatialIndex(to.positions, to.triangles));
   };
   return {one_way(first, second), one_way(second, first)};
 }

@@ -1,0 +1,136 @@
+#include "engine/metric/nearby_triangles.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "engine/base/parallel.h"
+
+namespace triglyph {
+namespace {
+
+struct Box {
+  Vec3 low;
+  Vec3 high;
+};
+
+// Around a triangle before and after, widened by the farthest move of its corners.
+Box swept_box(const Triangle& triangle, std::span<const Vec3> before, std::span<const Vec3> after) {
+  Box box{before[triangle[0]], before[triangle[0]]};
+  double reach_squared = 0;
+  for (const std::uint32_t point : triangle) {
+    for (const Vec3& position : {before[point], after[point]}) {
+      box.low.minimize(position);
+      box.high.maximize(position);
+    }
+    reach_squared = std::max(reach_squared, (after[point] - before[point]).sqrnorm());
+  }
+  const double reach = std::sqrt(reach_squared);
+  box.low -= Vec3(reach, reach, reach);
+  box.high += Vec3(reach, reach, reach);
+  return box;
+}
+
+// The cells of a grid that some boxes touch, as bits addressed by a hash of the cell: another cell may
+// be taken for a touched one, which keeps a triangle too many and never one too few.
+class TouchedCells {
+ public:
+  // Boxes given to touch() are at most `largest` wide.
+  TouchedCells(const Vec3& origin, double largest)
+      : origin_(origin), cell_(largest / kCellsAcross), bits_(kSlots / 64, 0) {}
+
+  void touch(const Box& box) {
+    visit_slots(cells_of(box), [&](std::size_t slot) {
+      bits_[slot / 64] |= std::uint64_t{1} << (slot % 64);
+      return false;
+    });
+  }
+
+  [[nodiscard]] bool touches(const Box& box) const {
+    const Cells cells = cells_of(box);
+    double count = 1;
+    for (std::size_t axis = 0; axis < 3; ++axis) count *= cells.high[axis] - cells.low[axis] + 1;
+    if (!(count <= kMostCells)) return true;  // a triangle as large as that is kept unseen
+    return visit_slots(
+        cells, [&](std::size_t slot) { return ((bits_[slot / 64] >> (slot % 64)) & 1) != 0; });
+  }
+
+ private:
+  static constexpr std::size_t kSlots = std::size_t{1} << 20;
+  static constexpr double kCellsAcross = 4;
+  static constexpr double kMostCells = 1000;
+
+  struct Cells {
+    std::array<double, 3> low{}, high{};  // whole numbers
+  };
+
+  [[nodiscard]] Cells cells_of(const Box& box) const {
+    Cells cells;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      cells.low[axis] = std::floor((box.low[axis] - origin_[axis]) / cell_);
+      cells.high[axis] = std::floor((box.high[axis] - origin_[axis]) / cell_);
+    }
+    return cells;
+  }
+
+  // Visits the slots of some cells until one says true.
+  template <typename Visit>
+  static bool visit_slots(const Cells& cells, const Visit& visit) {
+    for (double x = cells.low[0]; x <= cells.high[0]; ++x) {
+      for (double y = cells.low[1]; y <= cells.high[1]; ++y) {
+        for (double z = cells.low[2]; z <= cells.high[2]; ++z) {
+          if (visit(slot_of(x, y, z))) return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  [[nodiscard]] static std::size_t slot_of(double x, double y, double z) {
+    const auto whole = [](double value) {
+      return static_cast<std::uint64_t>(static_cast<std::int64_t>(value));
+    };
+    const std::uint64_t hash = whole(x) * 0x9e3779b97f4a7c15ULL ^
+                               whole(y) * 0xc2b2ae3d27d4eb4fULL ^
+                               whole(z) * 0x165667b19e3779f9ULL;
+    return static_cast<std::size_t>((hash >> 24) % kSlots);
+  }
+
+  Vec3 origin_;
+  double cell_;
+  std::vector<std::uint64_t> bits_;
+};
+
+}  // namespace
+
+std::vector<Triangle> nearby_triangles(std::span<const Triangle> triangles,
+                                       std::span<const Triangle> moved,
+                                       std::span<const Vec3> before, std::span<const Vec3> after) {
+  if (moved.empty()) return {};
+  std::vector<Box> boxes;
+  boxes.reserve(moved.size());
+  double largest = 0;
+  Vec3 low = before[moved[0][0]];
+  Vec3 high = low;
+  for (const Triangle& triangle : moved) {
+    boxes.push_back(swept_box(triangle, before, after));
+    low.minimize(boxes.back().low);
+    high.maximize(boxes.back().high);
+    largest = std::max(largest, (boxes.back().high - boxes.back().low).max());
+  }
+  // beyond this, cell numbers would not be exact
+  if (!(largest > 0 && (high - low).max() < 1e12 * largest)) {
+    return {triangles.begin(), triangles.end()};
+  }
+  TouchedCells touched(low, largest);
+  for (const Box& box : boxes) touched.touch(box);
+  return parallel_collect<Triangle>(
+      triangles.size(), [&](std::size_t t, std::vector<Triangle>& out) {
+        const Box box = swept_box(triangles[t], before, after);
+        const bool apart = (box.low - high).max() > 0 || (low - box.high).max() > 0;
+        if (!apart && touched.touches(box)) out.push_back(triangles[t]);
+      });
+}
+
+}  // namespace triglyph
