@@ -1,0 +1,185 @@
+// Meshes from elsewhere: Debian's packages where they are installed, and the folder named by the
+// environment variable TRIGLYPH_MODELS.
+#include <cstdlib>
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include "engine/base/error.h"
+#include "engine/base/output_file.h"
+#include "engine/extract.h"
+#include "engine/mesh/export_mesh.h"
+#include "engine/mesh/mesh_file.h"
+#include "engine/metric/hausdorff.h"
+#include "manifests/pipeline.h"
+#include "manifests/run.h"
+#include "tests/support/attacks.h"
+#include "tests/support/shapes.h"
+#include "tests/support/temp_folder.h"
+
+namespace triglyph {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kBunny = "/usr/share/glmark2/models/bunny.obj";
+
+Record mark_file(const fs::path& mesh, const fs::path& out, const JobSettings& settings) {
+  MeshList jobs({mesh}, settings, out);
+  std::vector<Record> records;
+  const std::atomic<bool> stop{false};
+  run_jobs(jobs, Key::trial(), {}, [&](const Record& record) { records.push_back(record); }, stop);
+  EXPECT_EQ(records.size(), 1U);
+  return records.at(0);
+}
+
+// The paper's experiment on one model: both steps must pay.
+void expect_optimisation_pays(const fs::path& mesh, std::uint32_t least_units,
+                              double most_hausdorff_rel_diag) {
+  const test::TempFolder folder;
+  JobSettings plain;
+  plain.fill = true;
+  plain.options.layout = LayoutMethod::FirstFit;
+  plain.options.assign = AssignMethod::Sequential;
+  JobSettings optimised;
+  optimised.fill = true;
+  const Record before = mark_file(mesh, folder / "plain", plain);
+  const Record after = mark_file(mesh, folder / "optimised", optimised);
+  EXPECT_EQ(before.status, Status::Marked) << before.error;
+  EXPECT_EQ(after.status, Status::Marked) << after.error;
+  EXPECT_GE(after.units_valid, least_units);
+  EXPECT_GT(after.units_valid, before.units_valid * 6 / 5);
+  EXPECT_GE(after.units_embedded, after.units_valid * 95 / 100);
+  EXPECT_LT(after.hausdorff, 0.6 * before.hausdorff);
+  EXPECT_LT(after.hausdorff_rel_diag, most_hausdorff_rel_diag);
+}
+
+TEST(RealMeshes, BunnyFillsAsInThePaper) {
+  if (!fs::exists(kBunny)) GTEST_SKIP() << "glmark2-data is not installed";
+  expect_optimisation_pays(kBunny, 5300, 0.00068);
+}
+
+// Units of the paper's table 1, optimised.
+TEST(RealMeshes, PaperModelsFillAsInThePaper) {
+  const char* models = std::getenv("TRIGLYPH_MODELS");
+  if (models == nullptr) GTEST_SKIP() << "TRIGLYPH_MODELS names no folder of models";
+  expect_optimisation_pays(fs::path(models) / "bunny.obj", 5300, 0.00068);
+  expect_optimisation_pays(fs::path(models) / "armadillo.obj", 3300, 0.00068);
+  expect_optimisation_pays(fs::path(models) / "max-planck.obj", 1600, 0.00068);
+}
+
+TEST(RealMeshes, MarkedBunnySurvivesWhatItShould) {
+  if (!fs::exists(kBunny)) GTEST_SKIP() << "glmark2-data is not installed";
+  const test::TempFolder folder;
+  JobSettings settings;
+  settings.message = {'b', 'u', 'n', 'n', 'y', '0', '0', '1'};
+  const Record record = mark_file(kBunny, folder.path(), settings);
+  ASSERT_EQ(record.status, Status::Marked) << record.error;
+  const Mesh marked = MeshFile::open(record.job.out).mesh();
+  const WordCode code(Key::trial(), {});
+  const auto scheme = make_scheme("tsq", code, {});
+  const auto message_in = [&](const Mesh& mesh) {
+    const test::Solid solid(mesh);
+    return extract(solid.surface(), *scheme, code).message;
+  };
+  EXPECT_EQ(message_in(marked), settings.message);
+  EXPECT_EQ(message_in(test::with_significant_digits(marked, 6)), settings.message);
+  EXPECT_FALSE(message_in(MeshFile::open(kBunny).mesh()));
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    EXPECT_EQ(message_in(test::shuffled(marked, seed)), settings.message);
+    EXPECT_EQ(message_in(test::moved_rigidly_and_scaled(marked, seed)), settings.message);
+    EXPECT_EQ(message_in(test::cropped_half(marked, seed)), settings.message);
+  }
+  fs::path path = record.job.out;
+  const FileFormat chain[] = {FileFormat::PlyLittle, FileFormat::StlBinary, FileFormat::Off};
+  const char* endings[] = {"ply", "stl", "off"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    ExportFormat format;
+    format.format = chain[i];
+    const Mesh mesh = MeshFile::open(path).mesh();
+    path = folder / (std::string("chain.") + endings[i]);
+    OutputFile file(path);
+    file.write(export_mesh(mesh, format));
+    file.commit();
+    EXPECT_EQ(extract_file(path, Key::trial(), {}).extraction.message, settings.message) << path;
+  }
+}
+
+TEST(RealMeshes, OutputDiffersFromInputInMovedCoordinatesOnly) {
+  if (!fs::exists(kBunny)) GTEST_SKIP() << "glmark2-data is not installed";
+  const test::TempFolder folder;
+  JobSettings settings;
+  settings.message = {'x'};
+  const Record record = mark_file(kBunny, folder.path(), settings);
+  std::istringstream before(test::read_all(kBunny)), after(test::read_all(record.job.out));
+  std::string a, b;
+  std::size_t changed = 0;
+  while (std::getline(before, a)) {
+    ASSERT_TRUE(std::getline(after, b));
+    if (a == b) continue;
+    ++changed;
+    EXPECT_EQ(a.substr(0, 2), "v ");
+    EXPECT_EQ(b.substr(0, 2), "v ");
+  }
+  EXPECT_FALSE(std::getline(after, b));
+  EXPECT_GT(changed, 0U);
+  EXPECT_LE(changed, 6U * record.units_embedded);
+}
+
+// A manifest over everything that may lie in a folder: each gets a record, none ends the run.
+TEST(RealMeshes, EveryFileOfACollectionGetsARecord) {
+  const test::TempFolder folder;
+  std::string manifest;
+  std::size_t expected = 0;
+  for (const char* pattern :
+       {"OBJ/*.obj", "OFF/*.off", "PLY/*.ply", "STL/*.[sS][tT][lL]", "invalid/*.o[bf][jf]",
+        "invalid/*.ply"}) {
+    const fs::path glob = fs::path("/usr/share/assimp/models") / pattern;
+    const std::size_t files = fs::exists(glob_root(glob)) ? expand_glob(glob).size() : 0;
+    if (files == 0) continue;
+    expected += files;
+    manifest += "{\"mesh\": \"" + glob.string() + "\"}\n";
+  }
+  const std::pair<const char*, std::string> hostile[] = {
+      {"huge.off", "OFF\n4000000000 4000000000 0\n0 0 0\n"},
+      {"huge.ply",
+       "ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\n"
+       "property float z\nend_header\n0 0 0\n"},
+      {"noend.ply", "ply\nformat ascii 1.0\nelement vertex 3\n"},
+      {"noelement.ply", "ply\nformat ascii 1.0\nproperty float x\nend_header\n"},
+      {"truncated.stl", std::string(80, '\0') + std::string("\0(kn", 4) + std::string(50, '\0')},
+      {"nan.obj", "v nan inf 0\nv 1e999 0 0\nf 1 2 1\n"},
+      {"range.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 90000000/1/1 2/1/1 3/1/1\n"},
+      {"library.obj", "mtllib ../../../../../../dev/zero\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"},
+      {"empty.obj", ""},
+      {"strange.xyz", "1 2 3\n"}};
+  for (const auto& [name, bytes] : hostile) {
+    folder.write(name, bytes);
+    manifest += std::string("{\"mesh\": \"") + name + "\"}\n";
+    ++expected;
+  }
+  mkfifo((folder / "pipe.obj").c_str(), 0600);
+  fs::create_directory(folder / "folder.obj");
+  manifest += "{\"mesh\": \"pipe.obj\"}\n{\"mesh\": \"folder.obj\"}\n{\"mesh\": \"absent.obj\"}\n";
+  expected += 3;
+
+  JobSettings settings;
+  settings.message = {'c', 'o', 'l', 'l', 'e', 'c', 't', '!'};
+  ManifestReader jobs(folder.write("m.jsonl", manifest), settings, folder / "out");
+  std::vector<Record> records;
+  const std::atomic<bool> stop{false};
+  run_jobs(jobs, Key::trial(), {}, [&](const Record& record) { records.push_back(record); }, stop);
+  EXPECT_EQ(records.size(), expected);
+  for (const Record& record : records) {
+    EXPECT_NE(record.status, Status::Failed) << record.error;
+    EXPECT_EQ(record.status == Status::Marked, fs::exists(record.job.out)) << record.job.mesh;
+    EXPECT_EQ(record.status == Status::Marked, record.error.empty());
+    if (record.status != Status::Marked) {
+      EXPECT_EQ(record.error.find('\n'), std::string::npos);
+      EXPECT_EQ(record.error.rfind(record.job.mesh.string() + ": ", 0), 0U) << record.error;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace triglyph
