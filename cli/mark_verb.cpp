@@ -42,13 +42,13 @@ struct MarkArguments {
     settings.message =
         message_hex.empty() ? Message(text.begin(), text.end()) : from_hex(message_hex);
     scheme.apply_to(settings);
-    settings.options.layout = layout_method(layout);
-    settings.options.assign = assign_method(assign);
-    settings.options.scheme_options.cost = cost_function(cost);
-    settings.options.redundancy = redundancy;
-    settings.options.max_move_rel_diag = max_move_percent / 100;
+    settings.layout = layout_method(layout);
+    settings.assign = assign_method(assign);
+    settings.cost = cost_function(cost);
+    settings.redundancy = redundancy;
+    settings.max_move_rel_diag = max_move_percent / 100;
     // fails early on a message that cannot be, before any mesh is opened
-    if (!fill) (void)WordCode(Key::trial(), settings.options.format).words_of(settings.message);
+    if (!fill) (void)WordCode(Key::trial(), settings.resolved().format).words_of(settings.message);
     return settings;
   }
 };

@@ -20,25 +20,23 @@ void SchemeArguments::add_to(CLI::App& verb) {
   verb.add_option("--scheme", scheme_, "Embedding scheme")
       ->check(CLI::IsMember({"tsq"}))
       ->capture_default_str();
-  verb.add_option("--marker-bits", format_.marker_bits, "Bits of the marker, m")
-      ->check(CLI::Range(1, 16))
-      ->capture_default_str();
-  verb.add_option("--subscript-bits", format_.subscript_bits,
-                  "Bits of the subscript, s; --fill chooses its own")
-      ->check(CLI::Range(1, 16))
-      ->capture_default_str();
-  verb.add_option("--part-bits", format_.part_bits, "Bits of the message in a unit, w")
-      ->check(CLI::Range(2, 32))
-      ->capture_default_str();
-  verb.add_option("--step", step_,
-                  "Width of a quantiser cell, dimensionless [0.03, with --fill 0.004]")
-      ->check(CLI::Range(1e-6, 0.5));
+  verb.add_option("--marker-bits", marker_bits_, "Bits of the marker, m [the scheme's]")
+      ->check(CLI::Range(1, 16));
+  verb.add_option("--subscript-bits", subscript_bits_,
+                  "Bits of the subscript, s; with --fill the most it may use [the scheme's]")
+      ->check(CLI::Range(1, 16));
+  verb.add_option("--part-bits", part_bits_, "Bits of the message in a unit, w [the scheme's]")
+      ->check(CLI::Range(2, 32));
+  verb.add_option("--step", step_, "Width of a quantiser cell, dimensionless [the scheme's]")
+      ->check(CLI::PositiveNumber);
 }
 
 void SchemeArguments::apply_to(JobSettings& settings) const {
-  settings.options.scheme = scheme_;
-  settings.options.format = format_;
-  if (step_ > 0) settings.step = step_;
+  settings.scheme = scheme_;
+  settings.marker_bits = marker_bits_;
+  settings.subscript_bits = subscript_bits_;
+  settings.part_bits = part_bits_;
+  settings.step = step_;
 }
 
 void MachineArguments::add_threads_to(CLI::App& verb) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -28,8 +29,10 @@ class SchemeArguments {
 
  private:
   std::string scheme_ = "tsq";
-  WordFormat format_;
-  double step_ = 0;
+  std::optional<int> marker_bits_;
+  std::optional<int> subscript_bits_;
+  std::optional<int> part_bits_;
+  std::optional<double> step_;
 };
 
 // --threads and --memory.

@@ -16,8 +16,9 @@ namespace {
 // How often words that could not be embedded are dealt out anew before the mesh is taken as it is.
 constexpr int kMaxRounds = 16;
 
-int fill_subscript_bits(std::size_t units) {
-  return std::clamp(static_cast<int>(std::bit_width(units - 1)), 1, kMaxFillSubscriptBits);
+// As many as tell the units apart, at most those the options allow.
+int fill_subscript_bits(std::size_t units, const WordFormat& format) {
+  return std::clamp(static_cast<int>(std::bit_width(units - 1)), 1, format.subscript_bits);
 }
 
 // Placements that did not survive, or none if every part kept at least half of its units.
@@ -87,6 +88,15 @@ AssignMethod assign_method(const std::string& name) {
   throw Error(ErrorCode::Usage, {}, "", "unknown assignment '" + name + "'");
 }
 
+MarkOptions default_mark_options(const std::string& scheme, bool fill) {
+  const SchemeDefaults defaults = scheme_defaults(scheme);
+  MarkOptions options;
+  options.scheme = scheme;
+  options.format = fill ? defaults.fill_format : defaults.format;
+  options.scheme_options.step = fill ? defaults.fill_step : defaults.step;
+  return options;
+}
+
 Marking mark(const Surface& surface, std::span<const std::uint8_t> message, const Key& key,
              const MarkOptions& options, const Rounding& rounding, double number_step) {
   const bool fill = message.empty();
@@ -108,7 +118,9 @@ Marking mark(const Surface& surface, std::span<const std::uint8_t> message, cons
   marking.units_valid = static_cast<std::uint32_t>(valid.size());
   marking.units_bound = layout_bound(conflicts);
 
-  if (fill && !valid.empty()) marking.format.subscript_bits = fill_subscript_bits(valid.size());
+  if (fill && !valid.empty()) {
+    marking.format.subscript_bits = fill_subscript_bits(valid.size(), options.format);
+  }
   const WordCode code(key, marking.format);
   if (fill) {
     marking.words = code.fill_words(
@@ -121,8 +133,7 @@ Marking mark(const Surface& surface, std::span<const std::uint8_t> message, cons
 
   // step 2: which word each unit carries; what proves impossible is dealt out anew
   const auto scheme = scheme_for(code);
-  const double limit =
-      fill ? 0 : options.max_move_rel_diag * box_diagonal(surface.mesh.positions);
+  const double limit = fill ? 0 : options.max_move_rel_diag * box_diagonal(surface.mesh.positions);
   WordAssigner assigner(surface, *scheme, units, valid, marking.words, options, limit);
   const bool once = fill || options.assign == AssignMethod::Sequential;
   for (int round = 0; round < (once ? 1 : kMaxRounds); ++round) {

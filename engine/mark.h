@@ -41,11 +41,9 @@ struct MarkOptions {
   double max_move_rel_diag = 0.001;
 };
 
-// Options for the paper's experiment, in which every unit carries a part of its own: as many
-// subscripts as a unit can tell apart, in cells that are small because they must survive rounding
-// only.
-inline constexpr double kFillStep = 0.004;
-inline constexpr int kMaxFillSubscriptBits = 13;
+// The options with which a scheme marks a message or fills a mesh unless the user says otherwise.
+// Throws Error Usage for an unknown scheme.
+[[nodiscard]] MarkOptions default_mark_options(const std::string& scheme, bool fill);
 
 enum class MarkStatus {
   Marked,

@@ -9,18 +9,24 @@
 
 namespace triglyph {
 
+// What the user asked for. Word format and cell width belong to the scheme and to what is marked,
+// so they are settled last, by resolved().
 struct JobSettings {
-  Message message;             // 1 to 256 bytes; not used by fill
-  bool fill = false;           // the paper's experiment: a random message as long as the capacity
-  std::optional<double> step;  // cell width; nothing: the default of a message or of fill
-  MarkOptions options;
+  Message message;    // 1 to 256 bytes; not used by fill
+  bool fill = false;  // the paper's experiment: a random message as long as the capacity
+  std::string scheme = "tsq";
+  std::optional<int> marker_bits;
+  std::optional<int> subscript_bits;
+  std::optional<int> part_bits;
+  std::optional<double> step;
+  CostFunction cost = CostFunction::Displacement;
+  LayoutMethod layout = MarkOptions{}.layout;
+  AssignMethod assign = MarkOptions{}.assign;
+  std::uint32_t redundancy = MarkOptions{}.redundancy;
+  double max_move_rel_diag = MarkOptions{}.max_move_rel_diag;
 
-  // The options with the cell width that applies.
-  [[nodiscard]] MarkOptions resolved() const {
-    MarkOptions result = options;
-    if (step || fill) result.scheme_options.step = step.value_or(kFillStep);
-    return result;
-  }
+  // Throws Error Usage for an unknown scheme.
+  [[nodiscard]] MarkOptions resolved() const;
 };
 
 struct Job {

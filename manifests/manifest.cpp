@@ -34,7 +34,6 @@ bool matches(fs::path::iterator pattern, fs::path::iterator pattern_end, fs::pat
 
 // Applies one key of a manifest line to settings; false if it is none of theirs.
 bool apply(const std::string& key, const Json& value, JobSettings& settings) {
-  MarkOptions& options = settings.options;
   if (key == "message") {
     const auto text = value.get<std::string>();
     settings.message.assign(text.begin(), text.end());
@@ -45,23 +44,23 @@ bool apply(const std::string& key, const Json& value, JobSettings& settings) {
   } else if (key == "fill") {
     settings.fill = value.get<bool>();
   } else if (key == "scheme") {
-    options.scheme = value.get<std::string>();
+    settings.scheme = value.get<std::string>();
   } else if (key == "layout") {
-    options.layout = layout_method(value.get<std::string>());
+    settings.layout = layout_method(value.get<std::string>());
   } else if (key == "assign") {
-    options.assign = assign_method(value.get<std::string>());
+    settings.assign = assign_method(value.get<std::string>());
   } else if (key == "cost") {
-    options.scheme_options.cost = cost_function(value.get<std::string>());
+    settings.cost = cost_function(value.get<std::string>());
   } else if (key == "redundancy") {
-    options.redundancy = value.get<std::uint32_t>();
+    settings.redundancy = value.get<std::uint32_t>();
   } else if (key == "max_move") {
-    options.max_move_rel_diag = value.get<double>();
+    settings.max_move_rel_diag = value.get<double>();
   } else if (key == "marker_bits") {
-    options.format.marker_bits = value.get<int>();
+    settings.marker_bits = value.get<int>();
   } else if (key == "subscript_bits") {
-    options.format.subscript_bits = value.get<int>();
+    settings.subscript_bits = value.get<int>();
   } else if (key == "part_bits") {
-    options.format.part_bits = value.get<int>();
+    settings.part_bits = value.get<int>();
   } else if (key == "step") {
     settings.step = value.get<double>();
   } else {

@@ -97,8 +97,8 @@ void describe(const Marking& marking, Record& record) {
 void load(Task& task) noexcept {
   run_stage(task, task.record.times.load, [&] {
     Record& record = task.record;
-    record.job.settings.options = record.job.settings.resolved();
-    record.format = record.job.settings.options.format;
+    record.options = record.job.settings.resolved();
+    record.format = record.options.format;
     record.status = Status::Marked;  // until a stage finds otherwise
     task.file = MeshFile::open(record.job.mesh);
     record.file_format = name_of(task.file->format());
@@ -118,7 +118,7 @@ void mark(Task& task, const Key& key) noexcept {
     record.key_fingerprint = key.fingerprint();
     task.marking = mark(
         {task.file->mesh(), *task.halfedges}, settings.fill ? Message{} : settings.message, key,
-        settings.options, [&](const Vec3& point) { return task.file->round(point); },
+        record.options, [&](const Vec3& point) { return task.file->round(point); },
         task.file->number_step());
     describe(task.marking, record);
     const std::string name = record.job.mesh.string() + ": ";
@@ -151,7 +151,7 @@ void read_back(Task& task, const Key& key) noexcept {
     Record& record = task.record;
     const JobSettings& settings = record.job.settings;
     const WordCode code(key, record.format);
-    const auto scheme = make_scheme(settings.options.scheme, code, settings.options.scheme_options);
+    const auto scheme = make_scheme(record.options.scheme, code, record.options.scheme_options);
     const Readable written(task.output->temporary_path());
     const Extraction found = extract(written.surface(), *scheme, code);
     record.units_embedded = count_carriers(task.marking, found.readings);
@@ -228,17 +228,15 @@ Verification verify_file(const RecordedMark& recorded, const Key& key) {
   }
   try {
     const Readable readable(recorded.out);
-    const WordCode code(key, recorded.format);
-    const auto scheme = make_scheme(recorded.settings.options.scheme, code,
-                                    recorded.settings.options.scheme_options);
+    const WordCode code(key, recorded.options.format);
+    const auto scheme = make_scheme(recorded.options.scheme, code, recorded.options.scheme_options);
     const Extraction found = extract(readable.surface(), *scheme, code);
-    const std::vector<Word> words = recorded.settings.fill
-                                        ? code.fill_words(recorded.parts)
-                                        : code.words_of(recorded.settings.message);
+    const std::vector<Word> words =
+        recorded.fill ? code.fill_words(recorded.parts) : code.words_of(recorded.message);
     Verification result;
     result.units_found = count_words(code, words, found.readings);
-    const bool carries = recorded.settings.fill ? 2 * result.units_found > recorded.units_embedded
-                                                : found.message == recorded.settings.message;
+    const bool carries = recorded.fill ? 2 * result.units_found > recorded.units_embedded
+                                       : found.message == recorded.message;
     if (!carries) {
       const bool other_key = recorded.key_fingerprint != key.fingerprint();
       return {FileVerdict::Lost, result.units_found,

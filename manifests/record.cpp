@@ -33,7 +33,7 @@ Status status_named(const std::string& name) {
 }
 
 Json options_of(const Record& record) {
-  const MarkOptions& options = record.job.settings.options;
+  const MarkOptions& options = record.options;
   return {{"layout", name_of(options.layout)},
           {"assign", name_of(options.assign)},
           {"cost", name_of(options.scheme_options.cost)},
@@ -59,7 +59,7 @@ Json to_json(const Record& record, std::uint64_t peak_bytes) {
   Json json = {{"schema", kRecordSchema},
                {"mesh", record.job.mesh.string()},
                {"out", record.job.out.string()},
-               {"scheme", settings.options.scheme},
+               {"scheme", settings.scheme},
                {"status", name_of(record.status)}};
   if (!record.error.empty()) json["error"] = record.error;
   json.update(Json{{"file_format", record.file_format},
@@ -108,15 +108,15 @@ RecordedMark parse_record(const std::string& line) try {
   RecordedMark mark;
   mark.out = json.at("out").get<std::string>();
   mark.status = status_named(json.at("status").get<std::string>());
-  mark.settings.fill = json.at("fill").get<bool>();
-  if (!mark.settings.fill) mark.settings.message = from_hex(json.at("message_hex"));
+  mark.fill = json.at("fill").get<bool>();
+  if (!mark.fill) mark.message = from_hex(json.at("message_hex"));
   const auto& options = json.at("options");
-  mark.settings.options.scheme = json.at("scheme").get<std::string>();
-  mark.settings.options.scheme_options.step = options.at("step").get<double>();
-  mark.format = {options.at("marker_bits").get<int>(), options.at("subscript_bits").get<int>(),
-                 options.at("part_bits").get<int>()};
-  validate(mark.format);
-  mark.settings.options.format = mark.format;
+  mark.options.scheme = json.at("scheme").get<std::string>();
+  mark.options.scheme_options.step = options.at("step").get<double>();
+  mark.options.format = {options.at("marker_bits").get<int>(),
+                         options.at("subscript_bits").get<int>(),
+                         options.at("part_bits").get<int>()};
+  validate(mark.options.format);
   mark.parts = json.at("parts").get<std::uint32_t>();
   mark.units_embedded = json.at("units_embedded").get<std::uint32_t>();
   mark.output_hash = json.at("output_hash").get<std::string>();

@@ -39,13 +39,14 @@ struct StageTimes {
 
 struct Record {
   Job job;
+  MarkOptions options;  // as they applied
   Status status = Status::Failed;
   std::string error;  // one line naming file and place; empty if marked
   std::string file_format;
   std::uint64_t vertices = 0;  // coordinate triples of the file
   std::uint64_t points = 0;    // distinct ones
   std::uint64_t faces = 0;
-  WordFormat format;
+  WordFormat format;  // of the words; fill chooses the subscript bits
   std::uint32_t parts = 0;
   std::uint32_t candidates = 0;
   std::uint32_t units_valid = 0;
@@ -72,8 +73,9 @@ struct Record {
 struct RecordedMark {
   std::filesystem::path out;
   Status status = Status::Failed;
-  JobSettings settings;
-  WordFormat format;
+  Message message;
+  bool fill = false;
+  MarkOptions options;
   std::uint32_t parts = 0;
   std::uint32_t units_embedded = 0;
   std::string output_hash;

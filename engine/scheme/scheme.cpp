@@ -16,6 +16,11 @@ CostFunction cost_function(const std::string& name) {
   throw Error(ErrorCode::Usage, {}, "", "unknown cost '" + name + "'");
 }
 
+SchemeDefaults scheme_defaults(const std::string& name) {
+  if (name == "tsq") return TsqScheme::defaults();
+  throw Error(ErrorCode::Usage, {}, "", "unknown scheme '" + name + "'");
+}
+
 std::unique_ptr<Scheme> make_scheme(const std::string& name, const WordCode& code,
                                     const SchemeOptions& options) {
   if (name == "tsq") return std::make_unique<TsqScheme>(code, options);

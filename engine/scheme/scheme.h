@@ -35,7 +35,8 @@ struct PointLists {
   }
 };
 
-// Candidates for invariant units, sorted by anchor. What a unit reads contains what it moves.
+// Candidates for invariant units. Anchors ascend and none comes twice: where a place offers several
+// units, the anchor says which. What a unit reads contains what it moves.
 struct UnitSet {
   std::vector<std::uint32_t> anchors;  // scheme's own: triangle (TSQ), edge (AIE), point (IIE)
   PointLists moved;                    // points whose position the unit may change
@@ -90,10 +91,22 @@ class Scheme {
                                         std::span<const Placement> placements,
                                         std::span<const Word> words) const = 0;
 
-  // Everything in the mesh that shows the marker, by ascending anchor. Blind: knows nothing of the
-  // original.
+  // Everything in the mesh that shows the marker, by strictly ascending anchor, the anchors being
+  // those of find_units. Blind: knows nothing of the original.
   [[nodiscard]] virtual std::vector<Reading> read(const Surface& surface) const = 0;
 };
+
+// What a scheme uses where the user says nothing: for a message, and for the paper's experiment, in
+// which every unit carries a part of its own and cells need only survive rounding.
+struct SchemeDefaults {
+  WordFormat format;
+  double step = 0;
+  WordFormat fill_format;  // its subscript bits are the most that are used
+  double fill_step = 0;
+};
+
+// Throws Error Usage for an unknown name.
+[[nodiscard]] SchemeDefaults scheme_defaults(const std::string& name);
 
 // "tsq": similarity invariant. Throws Error Usage for an unknown name or options out of range.
 [[nodiscard]] std::unique_ptr<Scheme> make_scheme(const std::string& name, const WordCode& code,

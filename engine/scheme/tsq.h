@@ -31,6 +31,8 @@ class TsqScheme final : public Scheme {
  public:
   TsqScheme(const WordCode& code, const SchemeOptions& options);
 
+  [[nodiscard]] static SchemeDefaults defaults() { return {{6, 8, 9}, 0.02, {6, 13, 9}, 0.004}; }
+
   // Anchors are triangles. O(triangles), parallel.
   [[nodiscard]] UnitSet find_units(const Surface& surface) const override;
 

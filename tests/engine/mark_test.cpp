@@ -130,8 +130,7 @@ TEST(Mark, RedundancyLeavesTheDearestUnitsOut) {
 }
 
 TEST(Mark, FillGivesEveryUnitAPartOfItsOwn) {
-  MarkOptions options;
-  options.scheme_options.step = kFillStep;
+  const MarkOptions options = default_mark_options("tsq", true);
   const auto& ball = test::bumpy_ball();
   const Marking marking = mark(ball.surface(), {}, Key::trial(), options, test::as_float, 1e-7);
   EXPECT_EQ(marking.words.size(), marking.units_valid);

@@ -144,8 +144,8 @@ TEST(Records, ComeBackFromTheirLine) {
   const RecordedMark mark = parse_record(to_json(records[0], 5).dump());
   EXPECT_EQ(mark.out, records[0].job.out);
   EXPECT_EQ(mark.status, Status::Marked);
-  EXPECT_EQ(mark.settings.message, records[0].job.settings.message);
-  EXPECT_EQ(mark.format, records[0].format);
+  EXPECT_EQ(mark.message, records[0].job.settings.message);
+  EXPECT_EQ(mark.options.format, records[0].format);
   EXPECT_EQ(mark.units_embedded, records[0].units_embedded);
   EXPECT_THROW((void)parse_record("{}"), Error);
   EXPECT_THROW((void)parse_record("not json"), Error);

@@ -28,7 +28,8 @@ Record mark_file(const fs::path& mesh, const fs::path& out, const JobSettings& s
   MeshList jobs({mesh}, settings, out);
   std::vector<Record> records;
   const std::atomic<bool> stop{false};
-  run_jobs(jobs, Key::trial(), {}, [&](const Record& record) { records.push_back(record); }, stop);
+  run_jobs(
+      jobs, Key::trial(), {}, [&](const Record& record) { records.push_back(record); }, stop);
   EXPECT_EQ(records.size(), 1U);
   return records.at(0);
 }
@@ -39,8 +40,8 @@ void expect_optimisation_pays(const fs::path& mesh, std::uint32_t least_units,
   const test::TempFolder folder;
   JobSettings plain;
   plain.fill = true;
-  plain.options.layout = LayoutMethod::FirstFit;
-  plain.options.assign = AssignMethod::Sequential;
+  plain.layout = LayoutMethod::FirstFit;
+  plain.assign = AssignMethod::Sequential;
   JobSettings optimised;
   optimised.fill = true;
   const Record before = mark_file(mesh, folder / "plain", plain);
@@ -131,9 +132,8 @@ TEST(RealMeshes, EveryFileOfACollectionGetsARecord) {
   const test::TempFolder folder;
   std::string manifest;
   std::size_t expected = 0;
-  for (const char* pattern :
-       {"OBJ/*.obj", "OFF/*.off", "PLY/*.ply", "STL/*.[sS][tT][lL]", "invalid/*.o[bf][jf]",
-        "invalid/*.ply"}) {
+  for (const char* pattern : {"OBJ/*.obj", "OFF/*.off", "PLY/*.ply", "STL/*.[sS][tT][lL]",
+                              "invalid/*.o[bf][jf]", "invalid/*.ply"}) {
     const fs::path glob = fs::path("/usr/share/assimp/models") / pattern;
     const std::size_t files = fs::exists(glob_root(glob)) ? expand_glob(glob).size() : 0;
     if (files == 0) continue;
@@ -168,7 +168,8 @@ TEST(RealMeshes, EveryFileOfACollectionGetsARecord) {
   ManifestReader jobs(folder.write("m.jsonl", manifest), settings, folder / "out");
   std::vector<Record> records;
   const std::atomic<bool> stop{false};
-  run_jobs(jobs, Key::trial(), {}, [&](const Record& record) { records.push_back(record); }, stop);
+  run_jobs(
+      jobs, Key::trial(), {}, [&](const Record& record) { records.push_back(record); }, stop);
   EXPECT_EQ(records.size(), expected);
   for (const Record& record : records) {
     EXPECT_NE(record.status, Status::Failed) << record.error;
