@@ -199,7 +199,8 @@ std::optional<Job> MeshList::next() {
 }
 
 std::size_t check_plan(JobSource& jobs) {
-  enum : char { kInput = 1, kOutput = 2 };
+  constexpr char kInput = 1;
+  constexpr char kOutput = 2;
   std::unordered_map<std::size_t, char> uses;  // by hash of a canonical name
   const auto use = [&](const std::string& name, char as, char excluded, const fs::path& path,
                        const char* clash) {
