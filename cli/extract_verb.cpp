@@ -51,7 +51,7 @@ void print_json(const std::filesystem::path& path, const FileExtraction& file) {
     json["agreement"] = found.agreement;
     json["false_alarm_bound"] = kFalseAlarmBound;
   }
-  std::cout << json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
+  std::cout << to_line(json);
 }
 
 int run_extract(const ExtractArguments& arguments) {
@@ -71,7 +71,7 @@ int run_extract(const ExtractArguments& arguments) {
         if (arguments.json) {
           const nlohmann::ordered_json json = {
               {"mesh", path.string()}, {"status", name_of(error.code())}, {"error", error.what()}};
-          std::cout << json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
+          std::cout << to_line(json);
         }
       }
     }

@@ -21,8 +21,8 @@ constexpr const char* kDefaultMessage = "triglyph";  // 8 bytes, if the user nam
 struct MarkArguments {
   std::vector<std::filesystem::path> inputs;
   std::filesystem::path out;
-  std::string message;
-  std::string message_hex;
+  std::optional<std::string> message;
+  std::optional<std::string> message_hex;
   bool fill = false;
   std::string layout = "min-degree";
   std::string assign = "bottleneck";
@@ -38,9 +38,8 @@ struct MarkArguments {
   [[nodiscard]] JobSettings settings() const {
     JobSettings settings;
     settings.fill = fill;
-    const std::string text = message.empty() ? kDefaultMessage : message;
-    settings.message =
-        message_hex.empty() ? Message(text.begin(), text.end()) : from_hex(message_hex);
+    const std::string text = message.value_or(kDefaultMessage);
+    settings.message = message_hex ? from_hex(*message_hex) : Message(text.begin(), text.end());
     scheme.apply_to(settings);
     settings.layout = layout_method(layout);
     settings.assign = assign_method(assign);
@@ -100,9 +99,7 @@ class RecordPrinter {
     failed_ += failed ? 1 : 0;
     bar_.clear();
     if (json_ || file_.is_open()) {
-      const std::string line = to_json(record, peak_bytes())
-                                   .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) +
-                               "\n";
+      const std::string line = to_line(to_json(record, peak_bytes()));
       if (json_) std::cout << line << std::flush;
       if (file_.is_open() && !(file_ << line << std::flush)) {
         throw Error(ErrorCode::Unwritable, records_, "", "the record cannot be written");

@@ -45,7 +45,7 @@ int run_measure(const MeasureArguments& arguments) {
     json["displacement_rms"] = moved.rms;
   }
   if (arguments.json) {
-    std::cout << json.dump() << "\n";
+    std::cout << to_line(json);
   } else {
     for (const auto& [name, value] : json.items()) std::cout << name << " " << value << "\n";
   }

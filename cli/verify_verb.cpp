@@ -34,7 +34,7 @@ void print(const VerifyArguments& arguments, const RecordedMark& recorded,
                                    {"units_recorded", recorded.units_embedded},
                                    {"units_found", found.units_found}};
     if (!found.detail.empty()) json["detail"] = found.detail;
-    std::cout << json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
+    std::cout << to_line(json);
     return;
   }
   std::cout << recorded.out.string() << ": " << name_of(found.verdict) << ", " << found.units_found

@@ -100,6 +100,10 @@ Json to_json(const Record& record, std::uint64_t peak_bytes) {
   return json;
 }
 
+std::string to_line(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 RecordedMark parse_record(const std::string& line) try {
   const auto json = nlohmann::json::parse(line);
   if (!json.is_object() || json.value("schema", 0) != kRecordSchema) {

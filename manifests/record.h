@@ -69,6 +69,9 @@ struct Record {
 // `peak_bytes`: largest resident size of the process so far.
 [[nodiscard]] nlohmann::ordered_json to_json(const Record& record, std::uint64_t peak_bytes);
 
+// One line of JSON, ended by a newline; bytes that are no UTF-8 (in file names) are replaced.
+[[nodiscard]] std::string to_line(const nlohmann::ordered_json& json);
+
 // Settings and identity of a finished mesh, as verify needs them.
 struct RecordedMark {
   std::filesystem::path out;

@@ -1,0 +1,98 @@
+// The stages of marking one mesh: sample shapes of growing size, so that the growth can be read off.
+#include <benchmark/benchmark.h>
+
+#include "engine/layout/layout.h"
+#include "engine/mark.h"
+#include "engine/mesh/halfedges.h"
+#include "engine/mesh/sample_shapes.h"
+#include "engine/metric/hausdorff.h"
+#include "engine/scheme/tsq.h"
+
+namespace triglyph {
+namespace {
+
+struct Subject {
+  Mesh mesh;
+  Halfedges halfedges;
+  WordCode code{Key::trial(), {}};
+  TsqScheme scheme{code, {}};
+  UnitSet units;
+
+  explicit Subject(std::size_t triangles)
+      : mesh(make_sample_shape(SampleShape::Closed, triangles, 1)),
+        halfedges(build_halfedges(mesh)),
+        units(scheme.find_units(surface())) {}
+  [[nodiscard]] Surface surface() const { return {mesh, halfedges}; }
+};
+
+void count_triangles(benchmark::State& state, const Mesh& mesh) {
+  state.counters["triangles/s"] =
+      benchmark::Counter(static_cast<double>(mesh.triangles.size()),
+                         benchmark::Counter::kIsIterationInvariantRate);
+}
+
+void BM_Halfedges(benchmark::State& state) {
+  const Subject subject(static_cast<std::size_t>(state.range(0)));
+  for (auto _ : state) benchmark::DoNotOptimize(build_halfedges(subject.mesh));
+  count_triangles(state, subject.mesh);
+}
+
+void BM_FindUnits(benchmark::State& state) {
+  const Subject subject(static_cast<std::size_t>(state.range(0)));
+  for (auto _ : state) benchmark::DoNotOptimize(subject.scheme.find_units(subject.surface()));
+  count_triangles(state, subject.mesh);
+}
+
+void BM_Layout(benchmark::State& state, LayoutMethod method) {
+  const Subject subject(static_cast<std::size_t>(state.range(0)));
+  std::size_t units = 0;
+  for (auto _ : state) {
+    const Conflicts conflicts(subject.units, subject.mesh.positions.size(),
+                              ConflictRule::ReadWrite);
+    units = choose_layout(conflicts, method).size();
+  }
+  count_triangles(state, subject.mesh);
+  state.counters["units"] = static_cast<double>(units);
+}
+
+void BM_Read(benchmark::State& state) {
+  const Subject subject(static_cast<std::size_t>(state.range(0)));
+  for (auto _ : state) benchmark::DoNotOptimize(subject.scheme.read(subject.surface()));
+  count_triangles(state, subject.mesh);
+}
+
+void BM_MarkMessage(benchmark::State& state) {
+  const Subject subject(static_cast<std::size_t>(state.range(0)));
+  const Message message{1, 2, 3, 4, 5, 6, 7, 8};
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(mark(subject.surface(), message, Key::trial(), {},
+                                  [](const Vec3& point) { return point; }, 0));
+  }
+  count_triangles(state, subject.mesh);
+}
+
+void BM_HausdorffOfMove(benchmark::State& state) {
+  const Subject subject(static_cast<std::size_t>(state.range(0)));
+  const Marking marking = mark(subject.surface(), Message{1, 2, 3, 4, 5, 6, 7, 8}, Key::trial(),
+                               {}, [](const Vec3& point) { return point; }, 0);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(hausdorff_of_move(subject.mesh.triangles, subject.mesh.positions,
+                                               marking.positions));
+  }
+  count_triangles(state, subject.mesh);
+}
+
+void sizes(benchmark::internal::Benchmark* bench) {
+  bench->Arg(10000)->Arg(100000)->Arg(1000000)->Unit(benchmark::kMillisecond)->UseRealTime();
+}
+
+BENCHMARK(BM_Halfedges)->Apply(sizes);
+BENCHMARK(BM_FindUnits)->Apply(sizes);
+BENCHMARK_CAPTURE(BM_Layout, first_fit, LayoutMethod::FirstFit)->Apply(sizes);
+BENCHMARK_CAPTURE(BM_Layout, min_degree, LayoutMethod::MinDegree)->Apply(sizes);
+BENCHMARK(BM_Read)->Apply(sizes);
+BENCHMARK(BM_MarkMessage)->Apply(sizes);
+BENCHMARK(BM_HausdorffOfMove)->Apply(sizes);
+
+}  // namespace
+}  // namespace triglyph
