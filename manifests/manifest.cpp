@@ -199,12 +199,12 @@ std::optional<Job> MeshList::next() {
 }
 
 std::size_t check_plan(JobSource& jobs) {
-  constexpr char kInput = 1;
-  constexpr char kOutput = 2;
-  std::unordered_map<std::size_t, char> uses;  // by hash of a canonical name
-  const auto use = [&](const std::string& name, char as, char excluded, const fs::path& path,
-                       const char* clash) {
-    char& known = uses[std::hash<std::string>{}(name)];
+  constexpr unsigned kInput = 1;
+  constexpr unsigned kOutput = 2;
+  std::unordered_map<std::size_t, unsigned> uses;  // by hash of a canonical name
+  const auto use = [&](const std::string& name, unsigned as, unsigned excluded,
+                       const fs::path& path, const char* clash) {
+    unsigned& known = uses[std::hash<std::string>{}(name)];
     if ((known & excluded) != 0) throw Error(ErrorCode::Usage, path, "", clash);
     known |= as;
   };
