@@ -29,11 +29,11 @@ std::uint32_t longest_side(const Mesh& mesh, std::uint32_t face) {
                                     squared.begin());
 }
 
-// The six points around a triangle in the order the scheme reads them; nothing at a boundary or
-// where they are not six.
-std::optional<Quadruple> quadruple_of(const Surface& surface, std::uint32_t face) {
+// The six points around a triangle, whose longest edge leaves corner `base`, in the order the
+// scheme reads them; nothing at a boundary or where they are not six.
+std::optional<Quadruple> quadruple_of(const Surface& surface, std::uint32_t face,
+                                      std::uint32_t base) {
   const auto& kernel = surface.halfedges.kernel;
-  const std::uint32_t base = longest_side(surface.mesh, face);
   const Triangle& triangle = surface.mesh.triangles[face];
   Quadruple points{triangle[base], triangle[(base + 1) % 3], triangle[(base + 2) % 3], 0, 0, 0};
   auto side = kernel.halfedge_handle(OpenMesh::FaceHandle(static_cast<int>(face)));
@@ -249,7 +249,9 @@ UnitSet TsqScheme::find_units(const Surface& surface) const {
   };
   const auto found = parallel_collect<Found>(
       surface.mesh.triangles.size(), [&](std::size_t face, std::vector<Found>& out) {
-        const auto points = quadruple_of(surface, static_cast<std::uint32_t>(face));
+        const auto points =
+            quadruple_of(surface, static_cast<std::uint32_t>(face),
+                         longest_side(surface.mesh, static_cast<std::uint32_t>(face)));
         if (points && embed_marker(surface.mesh, *points)) {
           out.push_back({static_cast<std::uint32_t>(face), *points});
         }
@@ -335,9 +337,11 @@ Embedding TsqScheme::embed(const Surface& surface, const UnitSet& units,
   return embedding;
 }
 
-bool TsqScheme::has_marker(const Mesh& mesh, const Quadruple& points, Reading& reading) const {
+bool TsqScheme::has_marker(const Mesh& mesh, std::uint32_t base, Reading& reading) const {
+  const Triangle& points = mesh.triangles[reading.anchor];
   const FlatTriangle triangle =
-      flatten(mesh.positions[points[0]], mesh.positions[points[1]], mesh.positions[points[2]]);
+      flatten(mesh.positions[points[base]], mesh.positions[points[(base + 1) % 3]],
+              mesh.positions[points[(base + 2) % 3]]);
   const auto height = marker_channel_.height.cell_of(triangle.height);
   if (height.bits != marker_channel_.height_bits(marker_)) return false;
   const auto log_ratio = marker_channel_.log_ratio.cell_of(triangle.shape().log_ratio);
@@ -370,16 +374,17 @@ void TsqScheme::read_outer(const Mesh& mesh, const Quadruple& points, Reading& r
 }
 
 std::vector<Reading> TsqScheme::read(const Surface& surface) const {
-  return parallel_collect<Reading>(surface.mesh.triangles.size(),
-                                   [&](std::size_t face, std::vector<Reading>& out) {
-                                     Reading reading;
-                                     reading.anchor = static_cast<std::uint32_t>(face);
-                                     const auto points = quadruple_of(surface, reading.anchor);
-                                     if (!points || !has_marker(surface.mesh, *points, reading))
-                                       return;
-                                     read_outer(surface.mesh, *points, reading);
-                                     if (std::isfinite(reading.weight)) out.push_back(reading);
-                                   });
+  const auto read_face = [&](std::size_t face, std::vector<Reading>& out) {
+    Reading reading;
+    reading.anchor = static_cast<std::uint32_t>(face);
+    const std::uint32_t base = longest_side(surface.mesh, reading.anchor);
+    if (!has_marker(surface.mesh, base, reading)) return;  // most faces end here
+    const auto points = quadruple_of(surface, reading.anchor, base);
+    if (!points) return;
+    read_outer(surface.mesh, *points, reading);
+    if (std::isfinite(reading.weight)) out.push_back(reading);
+  };
+  return parallel_collect<Reading>(surface.mesh.triangles.size(), read_face);
 }
 
 }  // namespace triglyph

@@ -84,8 +84,7 @@ class TsqScheme final : public Scheme {
                                                    std::span<const std::uint32_t> points) const;
   [[nodiscard]] std::array<std::uint32_t, 3> outer_bits(const Word& word) const;
   [[nodiscard]] float combine(const Marked& marked, float s, float d1, float d2) const;
-  [[nodiscard]] bool has_marker(const Mesh& mesh, const std::array<std::uint32_t, 6>& points,
-                                Reading& reading) const;
+  [[nodiscard]] bool has_marker(const Mesh& mesh, std::uint32_t base, Reading& reading) const;
   void read_outer(const Mesh& mesh, const std::array<std::uint32_t, 6>& points,
                   Reading& reading) const;
 
