@@ -7,8 +7,9 @@
 namespace triglyph {
 namespace {
 
-// Pairs of unit and word that one assignment looks at: 256 MB of costs. More units than fit are dealt
-// into blocks, each with its share of the demand; beyond that size the optimum is one of blocks.
+// Pairs of unit and word that one assignment looks at: 256 MB of costs. More units than fit are
+// dealt into blocks, each with its share of the demand; beyond that size the optimum is one of
+// blocks.
 constexpr std::size_t kMaxPairs = std::size_t{1} << 26;
 
 constexpr std::size_t kNoBlock = static_cast<std::size_t>(-1);
@@ -75,8 +76,7 @@ WordPlan WordAssigner::plan(std::uint32_t redundancy) {
 }
 
 WordPlan WordAssigner::solve(std::uint32_t redundancy) {
-  const std::vector<std::uint32_t> demand =
-      share_demand(valid_.size(), words_.size(), redundancy);
+  const std::vector<std::uint32_t> demand = share_demand(valid_.size(), words_.size(), redundancy);
   WordPlan plan;
   for (std::size_t block = 0; block < blocks_; ++block) {
     std::vector<std::uint32_t> share(words_.size());
@@ -117,8 +117,9 @@ const CostMatrix& WordAssigner::block_costs(std::size_t block,
   for (const auto& [unit, word] : ruled_out_) {
     const auto at = std::lower_bound(chosen.begin(), chosen.end(), unit);
     if (at == chosen.end() || *at != unit) continue;
-    costs_.values[std::size_t{word} * chosen.size() +
-                  static_cast<std::size_t>(at - chosen.begin())] = kInfeasible;
+    costs_
+        .values[std::size_t{word} * chosen.size() + static_cast<std::size_t>(at - chosen.begin())] =
+        kInfeasible;
   }
   return costs_;
 }

@@ -32,8 +32,9 @@ class WordAssigner {
                std::span<const std::uint32_t> valid, std::span<const Word> words,
                const MarkOptions& options, double max_cost);
 
-  // The best plan without the pairs that were ruled out. With a least redundancy R wanted of 0 every
-  // valid unit is used. An un-optimised plan takes units as they come and has no limit of cost.
+  // The best plan without the pairs that were ruled out. With a least redundancy R wanted of 0
+  // every valid unit is used. An un-optimised plan takes units as they come and has no limit of
+  // cost.
   [[nodiscard]] WordPlan plan(std::uint32_t redundancy);
 
   // A pair that turned out not to be embeddable.

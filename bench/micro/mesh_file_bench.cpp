@@ -138,5 +138,3 @@ void BM_RewriteBunnyOpenMesh(benchmark::State& state) {
 BENCHMARK(BM_RewriteBunnyOpenMesh)->UseRealTime()->Unit(benchmark::kMillisecond);
 
 }  // namespace
-
-

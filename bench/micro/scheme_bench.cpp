@@ -1,4 +1,5 @@
-// The stages of marking one mesh: sample shapes of growing size, so that the growth can be read off.
+// The stages of marking one mesh: sample shapes of growing size, so that the growth can be read
+// off.
 #include <benchmark/benchmark.h>
 
 #include "engine/layout/layout.h"
@@ -26,9 +27,8 @@ struct Subject {
 };
 
 void count_triangles(benchmark::State& state, const Mesh& mesh) {
-  state.counters["triangles/s"] =
-      benchmark::Counter(static_cast<double>(mesh.triangles.size()),
-                         benchmark::Counter::kIsIterationInvariantRate);
+  state.counters["triangles/s"] = benchmark::Counter(static_cast<double>(mesh.triangles.size()),
+                                                     benchmark::Counter::kIsIterationInvariantRate);
 }
 
 void BM_Halfedges(benchmark::State& state) {
@@ -65,19 +65,20 @@ void BM_MarkMessage(benchmark::State& state) {
   const Subject subject(static_cast<std::size_t>(state.range(0)));
   const Message message{1, 2, 3, 4, 5, 6, 7, 8};
   for (auto _ : state) {
-    benchmark::DoNotOptimize(mark(subject.surface(), message, Key::trial(), {},
-                                  [](const Vec3& point) { return point; }, 0));
+    benchmark::DoNotOptimize(mark(
+        subject.surface(), message, Key::trial(), {}, [](const Vec3& point) { return point; }, 0));
   }
   count_triangles(state, subject.mesh);
 }
 
 void BM_HausdorffOfMove(benchmark::State& state) {
   const Subject subject(static_cast<std::size_t>(state.range(0)));
-  const Marking marking = mark(subject.surface(), Message{1, 2, 3, 4, 5, 6, 7, 8}, Key::trial(),
-                               {}, [](const Vec3& point) { return point; }, 0);
+  const Marking marking = mark(
+      subject.surface(), Message{1, 2, 3, 4, 5, 6, 7, 8}, Key::trial(), {},
+      [](const Vec3& point) { return point; }, 0);
   for (auto _ : state) {
-    benchmark::DoNotOptimize(hausdorff_of_move(subject.mesh.triangles, subject.mesh.positions,
-                                               marking.positions));
+    benchmark::DoNotOptimize(
+        hausdorff_of_move(subject.mesh.triangles, subject.mesh.positions, marking.positions));
   }
   count_triangles(state, subject.mesh);
 }

@@ -23,8 +23,9 @@ struct Sample {
 
 constexpr std::size_t kSamplesPerRound = 4096;
 
-// The farthest of the samples from the surface. Those with the greatest reach go first; a sample whose
-// reach is within the farthest yet cannot change the answer, so the order does not matter to it.
+// The farthest of the samples from the surface. Those with the greatest reach go first; a sample
+// whose reach is within the farthest yet cannot change the answer, so the order does not matter to
+// it.
 double farthest_sample(std::vector<Sample> samples, const SpatialIndex& surface) {
   const auto greater = [](const Sample& a, const Sample& b) { return a.reach > b.reach; };
   double farthest = 0;
@@ -40,17 +41,17 @@ double farthest_sample(std::vector<Sample> samples, const SpatialIndex& surface)
           distances[i] = std::min(distance, samples[i].reach);
         },
         64);
-    farthest = std::max(farthest, *std::max_element(distances.begin(),
-                                                    distances.begin() +
-                                                        static_cast<std::ptrdiff_t>(count)));
+    farthest = std::max(farthest,
+                        *std::max_element(distances.begin(),
+                                          distances.begin() + static_cast<std::ptrdiff_t>(count)));
     samples.erase(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(count));
     std::erase_if(samples, [&](const Sample& sample) { return sample.reach <= farthest; });
   }
   return farthest;
 }
 
-// Samples of the given triangles: each point once, and the midpoints of the edges and the centroid of
-// every triangle. make(blend) makes a sample of a function that blends positions.
+// Samples of the given triangles: each point once, and the midpoints of the edges and the centroid
+// of every triangle. make(blend) makes a sample of a function that blends positions.
 template <typename Make>
 std::vector<Sample> take_samples(std::span<const Triangle> triangles, const Make& make) {
   std::vector<std::uint32_t> points;

@@ -32,8 +32,8 @@ Box swept_box(const Triangle& triangle, std::span<const Vec3> before, std::span<
   return box;
 }
 
-// The cells of a grid that some boxes touch, as bits addressed by a hash of the cell: another cell may
-// be taken for a touched one, which keeps a triangle too many and never one too few.
+// The cells of a grid that some boxes touch, as bits addressed by a hash of the cell: another cell
+// may be taken for a touched one, which keeps a triangle too many and never one too few.
 class TouchedCells {
  public:
   // Boxes given to touch() are at most `largest` wide.
@@ -91,8 +91,7 @@ class TouchedCells {
     const auto whole = [](double value) {
       return static_cast<std::uint64_t>(static_cast<std::int64_t>(value));
     };
-    const std::uint64_t hash = whole(x) * 0x9e3779b97f4a7c15ULL ^
-                               whole(y) * 0xc2b2ae3d27d4eb4fULL ^
+    const std::uint64_t hash = whole(x) * 0x9e3779b97f4a7c15ULL ^ whole(y) * 0xc2b2ae3d27d4eb4fULL ^
                                whole(z) * 0x165667b19e3779f9ULL;
     return static_cast<std::size_t>((hash >> 24) % kSlots);
   }

@@ -53,10 +53,10 @@ TEST_F(Cli, VersionAndHelpSucceedAndUsageErrorsAreTwo) {
   EXPECT_EQ(run("mark --help").code, 0);
   for (const char* wrong :
        {"", "frobnicate", "mark", "mark a.obj --layout best --out o", "mark a.obj",
-        "mark a.obj --out o --message a --fill", "mark a.obj --out o --message-hex xy", "mark a.obj --out o --message ''", "extract",
-        "mark a.obj --out o --subscript-bits 2", "mark a.obj --out o --threads 0",
-        "extract a.obj --key-file absent.key", "mark absent.jsonl --out o",
-        "verify absent.jsonl"}) {
+        "mark a.obj --out o --message a --fill", "mark a.obj --out o --message-hex xy",
+        "mark a.obj --out o --message ''", "extract", "mark a.obj --out o --subscript-bits 2",
+        "mark a.obj --out o --threads 0", "extract a.obj --key-file absent.key",
+        "mark absent.jsonl --out o", "verify absent.jsonl"}) {
     const Result result = run(wrong);
     EXPECT_EQ(result.code, 2) << wrong;
     EXPECT_EQ(result.out, "") << wrong;
