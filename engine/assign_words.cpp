@@ -111,7 +111,9 @@ const CostMatrix& WordAssigner::block_costs(std::size_t block,
     costs_of_block_ = block;
     const auto visible = static_cast<float>(kVisibleMove * max_cost_);
     if (is_limited()) {
-      for (float& cost : costs_.values) cost = cost > visible ? kInfeasible : cost;
+      for (float& cost : costs_.values) {
+        if (cost > visible) cost = kInfeasible;
+      }
     }
   }
   for (const auto& [unit, word] : ruled_out_) {

@@ -31,7 +31,7 @@ class Admission {
  public:
   explicit Admission(std::uint64_t budget) : budget_(budget) {}
 
-  void wait(TaskPointer task) {
+  void wait(const TaskPointer& task) {
     const auto larger = [](const TaskPointer& a, const TaskPointer& b) {
       return a->record.memory_estimate > b->record.memory_estimate;
     };
@@ -103,82 +103,118 @@ class Stages {
   const std::atomic<bool>& stop_;
 };
 
+namespace flow = tbb::flow;
+
+// A message to the admission node: a mesh that waits, or memory that is free again.
+using Request = std::variant<TaskPointer, Released>;
+
+// source -> window -> admit -> load -> mark -> write -> read back -> measure -> in order -> record
+//             ^         ^                                              |                      |
+//             |         +------------------- memory released ---------+                      |
+//             +------------------------------ one more may be known -------------------------+
+class MarkGraph {
+ public:
+  MarkGraph(JobSource& jobs, const Key& key, const RunOptions& options,
+            const std::function<void(const Record&)>& on_record, const std::atomic<bool>& stop)
+      : jobs_(jobs),
+        stop_(stop),
+        stages_(key, stop),
+        admission_(options.memory_bytes),
+        source_(graph_, [this](tbb::flow_control& control) { return next_task(control); }),
+        window_(graph_, kWindow),
+        announce_(graph_, flow::serial, [](const TaskPointer& task) { return Request(task); }),
+        admit_(graph_, flow::serial,
+               [this](const Request& request, auto& ports) { decide(request, ports); }),
+        load_(stage(&Stages::run_load)),
+        mark_(stage(&Stages::run_mark)),
+        write_(stage(&Stages::run_write)),
+        read_back_(stage(&Stages::run_read_back)),
+        measure_(graph_, flow::unlimited,
+                 [](const TaskPointer& task, auto& ports) {
+                   measure(*task);
+                   std::get<1>(ports).try_put(Released{task->record.memory_estimate});
+                   std::get<0>(ports).try_put(task);
+                 }),
+        in_order_(graph_, [](const TaskPointer& task) { return task->record.job.index; }),
+        record_(graph_, flow::serial, [&on_record](const TaskPointer& task) {
+          on_record(task->record);
+          return 1;
+        }) {
+    connect();
+  }
+
+  void run() {
+    source_.activate();
+    graph_.wait_for_all();
+    if (broken_manifest_) std::rethrow_exception(broken_manifest_);
+  }
+
+ private:
+  using Stage = flow::function_node<TaskPointer, TaskPointer>;
+
+  Stage stage(void (Stages::*work)(Task&) const) {
+    return {graph_, flow::unlimited, [this, work](const TaskPointer& task) {
+              (stages_.*work)(*task);
+              return task;
+            }};
+  }
+
+  TaskPointer next_task(tbb::flow_control& control) {
+    try {
+      if (!stop_) {
+        if (std::optional<Job> job = jobs_.next()) return make_task(std::move(*job));
+      }
+    } catch (...) {
+      broken_manifest_ = std::current_exception();
+    }
+    control.stop();
+    return nullptr;
+  }
+
+  template <typename Ports>
+  void decide(const Request& request, Ports& ports) {
+    if (const auto* task = std::get_if<TaskPointer>(&request)) admission_.wait(*task);
+    if (const auto* released = std::get_if<Released>(&request)) admission_.release(released->bytes);
+    while (const TaskPointer task = admission_.admit()) std::get<0>(ports).try_put(task);
+  }
+
+  void connect() {
+    flow::make_edge(source_, window_);
+    flow::make_edge(window_, announce_);
+    flow::make_edge(announce_, admit_);
+    flow::make_edge(flow::output_port<0>(admit_), load_);
+    flow::make_edge(load_, mark_);
+    flow::make_edge(mark_, write_);
+    flow::make_edge(write_, read_back_);
+    flow::make_edge(read_back_, measure_);
+    flow::make_edge(flow::output_port<0>(measure_), in_order_);
+    flow::make_edge(flow::output_port<1>(measure_), admit_);
+    flow::make_edge(in_order_, record_);
+    flow::make_edge(record_, window_.decrementer());
+  }
+
+  JobSource& jobs_;
+  const std::atomic<bool>& stop_;
+  Stages stages_;
+  Admission admission_;
+  std::exception_ptr broken_manifest_;
+
+  flow::graph graph_;
+  flow::input_node<TaskPointer> source_;
+  flow::limiter_node<TaskPointer, int> window_;
+  flow::function_node<TaskPointer, Request> announce_;
+  flow::multifunction_node<Request, std::tuple<TaskPointer>> admit_;
+  Stage load_, mark_, write_, read_back_;
+  flow::multifunction_node<TaskPointer, std::tuple<TaskPointer, Request>> measure_;
+  flow::sequencer_node<TaskPointer> in_order_;
+  flow::function_node<TaskPointer, int> record_;
+};
+
 }  // namespace
 
 void run_jobs(JobSource& jobs, const Key& key, const RunOptions& options,
               const std::function<void(const Record&)>& on_record, const std::atomic<bool>& stop) {
-  namespace flow = tbb::flow;
-  using AdmissionNode =
-      flow::multifunction_node<std::variant<TaskPointer, Released>, std::tuple<TaskPointer>>;
-  using MeasureNode =
-      flow::multifunction_node<TaskPointer,
-                               std::tuple<TaskPointer, std::variant<TaskPointer, Released>>>;
-
-  flow::graph graph;
-  const Stages stages(key, stop);
-  Admission admission(options.memory_bytes);
-  std::exception_ptr broken_manifest;
-
-  flow::input_node<TaskPointer> source(graph, [&](tbb::flow_control& control) -> TaskPointer {
-    try {
-      if (!stop && !broken_manifest) {
-        if (std::optional<Job> job = jobs.next()) return make_task(std::move(*job));
-      }
-    } catch (...) {
-      broken_manifest = std::current_exception();
-    }
-    control.stop();
-    return nullptr;
-  });
-  flow::limiter_node<TaskPointer, int> window(graph, kWindow);
-  flow::function_node<TaskPointer, std::variant<TaskPointer, Released>> announce(
-      graph, flow::serial,
-      [](const TaskPointer& task) { return std::variant<TaskPointer, Released>(task); });
-  AdmissionNode admit(graph, flow::serial, [&](const auto& message, auto& ports) {
-    if (const auto* task = std::get_if<TaskPointer>(&message)) admission.wait(*task);
-    if (const auto* released = std::get_if<Released>(&message)) admission.release(released->bytes);
-    while (TaskPointer task = admission.admit()) std::get<0>(ports).try_put(task);
-  });
-  const auto stage = [&](void (Stages::*work)(Task&) const) {
-    return flow::function_node<TaskPointer, TaskPointer>(graph, flow::unlimited,
-                                                         [&stages, work](TaskPointer task) {
-                                                           (stages.*work)(*task);
-                                                           return task;
-                                                         });
-  };
-  auto load_node = stage(&Stages::run_load);
-  auto mark_node = stage(&Stages::run_mark);
-  auto write_node = stage(&Stages::run_write);
-  auto read_back_node = stage(&Stages::run_read_back);
-  MeasureNode measure_node(graph, flow::unlimited, [](TaskPointer task, auto& ports) {
-    measure(*task);
-    std::get<1>(ports).try_put(Released{task->record.memory_estimate});
-    std::get<0>(ports).try_put(std::move(task));
-  });
-  flow::sequencer_node<TaskPointer> in_order(
-      graph, [](const TaskPointer& task) { return task->record.job.index; });
-  flow::function_node<TaskPointer, int> record_node(graph, flow::serial,
-                                                    [&](const TaskPointer& task) {
-                                                      on_record(task->record);
-                                                      return 1;
-                                                    });
-
-  flow::make_edge(source, window);
-  flow::make_edge(window, announce);
-  flow::make_edge(announce, admit);
-  flow::make_edge(flow::output_port<0>(admit), load_node);
-  flow::make_edge(load_node, mark_node);
-  flow::make_edge(mark_node, write_node);
-  flow::make_edge(write_node, read_back_node);
-  flow::make_edge(read_back_node, measure_node);
-  flow::make_edge(flow::output_port<0>(measure_node), in_order);
-  flow::make_edge(flow::output_port<1>(measure_node), admit);
-  flow::make_edge(in_order, record_node);
-  flow::make_edge(record_node, window.decrementer());
-
-  source.activate();
-  graph.wait_for_all();
-  if (broken_manifest) std::rethrow_exception(broken_manifest);
+  MarkGraph(jobs, key, options, on_record, stop).run();
 }
 
 void with_threads(int threads, const std::function<void()>& work) {

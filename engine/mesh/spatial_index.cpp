@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <new>
 
 #include <embree3/rtcore.h>
 
@@ -80,7 +81,7 @@ struct SpatialIndex::Scene {
     auto* corners = static_cast<std::uint32_t*>(
         rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                 3 * sizeof(std::uint32_t), triangles.size()));
-    check(points != nullptr && corners != nullptr, "Embree has no memory for the triangles");
+    if (points == nullptr || corners == nullptr) throw std::bad_alloc();
     for (std::size_t i = 0; i < 3 * triangles.size(); ++i) {
       const Vec3 point = (positions[triangles[i / 3][i % 3]] - centre) * scale;
       for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -77,9 +77,9 @@ class TouchedCells {
   // Visits the slots of some cells until one says true.
   template <typename Visit>
   static bool visit_slots(const Cells& cells, const Visit& visit) {
-    for (double x = cells.low[0]; x <= cells.high[0]; ++x) {
-      for (double y = cells.low[1]; y <= cells.high[1]; ++y) {
-        for (double z = cells.low[2]; z <= cells.high[2]; ++z) {
+    for (auto x = whole(cells.low[0]); x <= whole(cells.high[0]); ++x) {
+      for (auto y = whole(cells.low[1]); y <= whole(cells.high[1]); ++y) {
+        for (auto z = whole(cells.low[2]); z <= whole(cells.high[2]); ++z) {
           if (visit(slot_of(x, y, z))) return true;
         }
       }
@@ -87,12 +87,12 @@ class TouchedCells {
     return false;
   }
 
-  [[nodiscard]] static std::size_t slot_of(double x, double y, double z) {
-    const auto whole = [](double value) {
-      return static_cast<std::uint64_t>(static_cast<std::int64_t>(value));
-    };
-    const std::uint64_t hash = whole(x) * 0x9e3779b97f4a7c15ULL ^ whole(y) * 0xc2b2ae3d27d4eb4fULL ^
-                               whole(z) * 0x165667b19e3779f9ULL;
+  [[nodiscard]] static std::int64_t whole(double value) { return static_cast<std::int64_t>(value); }
+
+  [[nodiscard]] static std::size_t slot_of(std::int64_t x, std::int64_t y, std::int64_t z) {
+    const std::uint64_t hash = static_cast<std::uint64_t>(x) * 0x9e3779b97f4a7c15ULL ^
+                               static_cast<std::uint64_t>(y) * 0xc2b2ae3d27d4eb4fULL ^
+                               static_cast<std::uint64_t>(z) * 0x165667b19e3779f9ULL;
     return static_cast<std::size_t>((hash >> 24) % kSlots);
   }
 
