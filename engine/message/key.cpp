@@ -133,7 +133,7 @@ std::vector<std::uint8_t> Key::stream(KeyUse use, std::size_t count) const {
   const auto seed = derive(use);
   static_assert(kBytes == randombytes_SEEDBYTES);
   std::vector<std::uint8_t> bytes(count);
-  randombytes_buf_deterministic(bytes.data(), bytes.size(), seed.data());
+  if (count > 0) randombytes_buf_deterministic(bytes.data(), bytes.size(), seed.data());
   return bytes;
 }
 
