@@ -1,6 +1,7 @@
 #include "engine/assignment/candidates.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -8,17 +9,18 @@ namespace triglyph {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t kLanes = 8;
 constexpr std::size_t kChunksPerWanted = 2;  // more sharpen the cut, fewer make it cheaper
 constexpr std::size_t kTiesPerWanted = 2;    // equally good units listed before we cut
 
-double key_of(float cost, double price, float limit) {
-  return (cost <= limit ? static_cast<double>(cost) : kInfinity) + price;
+double key_of(float cost, double price) {
+  return static_cast<double>(cost) + price;
 }
 
-CandidateList list_all(std::span<const float> column, std::span<const double> prices, float limit) {
+CandidateList list_all(std::span<const float> column, std::span<const double> prices) {
   CandidateList list{{}, kInfinity};
   for (std::size_t unit = 0; unit < column.size(); ++unit) {
-    if (key_of(column[unit], prices[unit], limit) < kInfinity) {
+    if (key_of(column[unit], prices[unit]) < kInfinity) {
       list.pairs.push_back({static_cast<std::uint32_t>(unit), column[unit]});
     }
   }
@@ -26,16 +28,24 @@ CandidateList list_all(std::span<const float> column, std::span<const double> pr
 }
 
 std::vector<double> find_chunk_minima(std::span<const float> column, std::span<const double> prices,
-                                      float limit, std::size_t length) {
+                                      std::size_t length) {
   std::vector<double> minima((column.size() + length - 1) / length);
   for (std::size_t chunk = 0; chunk < minima.size(); ++chunk) {
     const std::size_t end = std::min(column.size(), (chunk + 1) * length);
-    double least = kInfinity;
-    for (std::size_t unit = chunk * length; unit < end; ++unit) {
-      const double key = key_of(column[unit], prices[unit], limit);
-      least = key < least ? key : least;
+    // lanes of their own: a single running minimum cannot be vectorised
+    std::array<double, kLanes> least;
+    least.fill(kInfinity);
+    std::size_t unit = chunk * length;
+    for (; unit + kLanes <= end; unit += kLanes) {
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        const double key = key_of(column[unit + lane], prices[unit + lane]);
+        least[lane] = key < least[lane] ? key : least[lane];
+      }
     }
-    minima[chunk] = least;
+    for (; unit < end; ++unit) {
+      least[0] = std::min(least[0], key_of(column[unit], prices[unit]));
+    }
+    minima[chunk] = *std::min_element(least.begin(), least.end());
   }
   return minima;
 }
@@ -50,13 +60,13 @@ CandidateList pick_candidates(std::span<const float> column, std::span<const dou
                               const CandidateQuery& query) {
   const std::size_t length =
       column.size() / (kChunksPerWanted * std::max<std::size_t>(1, query.wanted));
-  if (length < 2) return list_all(column, prices, query.limit);
-  const std::vector<double> minima = find_chunk_minima(column, prices, query.limit, length);
+  if (length < 2) return list_all(column, prices);
+  const std::vector<double> minima = find_chunk_minima(column, prices, length);
   std::vector<double> ordered = minima;
   const auto nth = ordered.begin() + static_cast<std::ptrdiff_t>(query.wanted) - 1;
   std::nth_element(ordered.begin(), nth, ordered.end());
   const double cut = *nth;
-  if (cut == kInfinity) return list_all(column, prices, query.limit);
+  if (cut == kInfinity) return list_all(column, prices);
 
   CandidateList list;
   list.pairs.reserve(2 * query.wanted);
@@ -68,7 +78,7 @@ CandidateList pick_candidates(std::span<const float> column, std::span<const dou
     if (minima[chunk] > cut) continue;
     const std::size_t end = std::min(column.size(), (chunk + 1) * length);
     for (std::size_t unit = chunk * length; unit < end; ++unit) {
-      const double key = key_of(column[unit], prices[unit], query.limit);
+      const double key = key_of(column[unit], prices[unit]);
       if (key > cut) continue;
       if (key == cut) {
         if (ties_left == 0) {

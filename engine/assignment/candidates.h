@@ -20,7 +20,6 @@ struct CandidateList {
 
 struct CandidateQuery {
   std::size_t wanted = 16;   // at least so many pairs, if there are as many
-  float limit = 0;           // pairs that cost more do not count; finite
   std::uint64_t spread = 0;  // where the search for equally good units starts; any number
 };
 

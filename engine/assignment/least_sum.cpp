@@ -23,6 +23,19 @@ std::uint64_t count_copies(std::span<const std::uint32_t> demand) {
   return copies;
 }
 
+constexpr float kAllFinite = std::numeric_limits<float>::max();
+
+// Infinite where the costs are above the limit.
+CostMatrix mask_above(const CostMatrix& costs, float limit) {
+  CostMatrix masked{costs.units, costs.words, std::vector<float>(costs.values.size())};
+  parallel_blocks(costs.values.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      masked.values[i] = costs.values[i] <= limit ? costs.values[i] : kInfeasible;
+    }
+  });
+  return masked;
+}
+
 }  // namespace
 
 void check_costs(const CostMatrix& costs, std::span<const std::uint32_t> demand) {
@@ -46,9 +59,12 @@ void check_costs(const CostMatrix& costs, std::span<const std::uint32_t> demand)
 std::vector<std::uint32_t> minimise_sum(const CostMatrix& costs,
                                         std::span<const std::uint32_t> demand, float limit,
                                         const PairGraph& graph, const Matching& maximum) {
+  const bool is_limited = limit < kAllFinite;
+  const CostMatrix masked = is_limited ? mask_above(costs, limit) : CostMatrix{};
+  const CostMatrix& allowed = is_limited ? masked : costs;
   std::vector<std::uint8_t> all_units(costs.units, 1);
   if (maximum.matched == count_copies(demand)) {
-    return solve_transport({costs, demand, all_units, limit});
+    return solve_transport({allowed, demand, all_units});
   }
   const Scarcity scarcity = find_scarcity(graph, maximum);
   std::vector<std::uint32_t> word_of_unit(costs.units, kNoWord);
@@ -61,7 +77,7 @@ std::vector<std::uint32_t> minimise_sum(const CostMatrix& costs,
     for (std::uint32_t unit = 0; unit < costs.units; ++unit) {
       part_units[unit] = scarcity.is_scarce_unit[unit] == is_scarce ? 1 : 0;
     }
-    const auto part = solve_transport({costs, part_demand, part_units, limit});
+    const auto part = solve_transport({allowed, part_demand, part_units});
     for (std::uint32_t unit = 0; unit < costs.units; ++unit) {
       if (part_units[unit] != 0) word_of_unit[unit] = part[unit];
     }
@@ -71,7 +87,6 @@ std::vector<std::uint32_t> minimise_sum(const CostMatrix& costs,
 
 Assignment assign_least_sum(const CostMatrix& costs, std::span<const std::uint32_t> demand) {
   check_costs(costs, demand);
-  constexpr float kAllFinite = std::numeric_limits<float>::max();
   const PairGraph graph = find_pairs_within(costs, kAllFinite);
   const Matching maximum = grow_maximum_matching(graph, empty_matching(costs.units, demand));
   return weigh_assignment(costs, minimise_sum(costs, demand, kAllFinite, graph, maximum));

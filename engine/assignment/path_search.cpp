@@ -54,6 +54,7 @@ void PathSearch::follow(std::uint32_t word, std::uint32_t unit, double distance)
 
 // Follows the candidates of a word to the words that hold them, to a free unit, to the reserve.
 void PathSearch::visit(std::uint32_t word) {
+  ++visits_;
   const TransportWord& w = state_.words[word];
   const double distance = reach_[word].distance;
   const double base = distance - w.value;
@@ -95,7 +96,6 @@ void PathSearch::visit_beyond_list(std::uint32_t word) {
   for (const std::uint32_t unit : open_units_) {
     if (is_closed(unit)) continue;
     open_units_[kept++] = unit;
-    if (column[unit] > state_.limit) continue;
     follow(word, unit, std::max(distance, base + (column[unit] + state_.prices[unit])));
   }
   open_units_.resize(kept);

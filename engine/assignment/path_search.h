@@ -19,6 +19,9 @@ class PathSearch {
   // std::logic_error. O(words log words + pairs listed) and now and then O(units).
   void serve(std::uint32_t source);
 
+  // Words visited by all searches so far.
+  [[nodiscard]] std::size_t visits() const { return visits_; }
+
  private:
   static constexpr double kFar = std::numeric_limits<double>::infinity();
 
@@ -58,6 +61,7 @@ class PathSearch {
   std::size_t open_count_ = 0;  // units no visited word holds
   Reach reserve_reach_;
   bool is_reserve_visited_ = false;
+  std::size_t visits_ = 0;
   Reach end_;  // nearest free unit, or room in the reserve
 };
 

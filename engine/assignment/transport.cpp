@@ -10,6 +10,8 @@
 //     bound on all other pairs, and is renewed in the search when the path length reaches that
 //     bound: exact without a pricing pass at the end.
 //  3. Where costs tie, the bids start from a maximum matching of the tied pairs.
+//  4. Where searches turn out to be long, an auction with shrinking steps (D. P. Bertsekas: The
+//     auction algorithm, 1988) finds better prices first.
 #include "engine/assignment/transport.h"
 
 #include <algorithm>
@@ -29,11 +31,18 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kManyTies = 2;  // best units a copy; distinct costs have hardly more than one
 constexpr std::uint32_t kBidsPerWord = 6;  // on average; more bids save few searches
+// An auction costs about as much as searches that visit each word some dozen times.
+constexpr std::size_t kPatience = 20;
+constexpr std::size_t kAuctionBidsPerWord = 40;  // a round ends sooner as a rule
+constexpr double kFirstStep = 0.25;              // of the widest gap between a word's candidates
+constexpr double kLastStep = 1e-5;
+constexpr double kStepRatio = 6;
 
 // The word takes its best units at the value of the best one it does not get, and raises their
-// prices so that it likes them just as well. It takes units from others only where that raises the
-// price; the words that lost a unit are appended to losers.
-void bid(TransportState& state, std::uint32_t word, std::vector<std::uint32_t>& losers) {
+// prices so that it likes them just as well, or less by `step`. It takes units from others only
+// where that raises the price; the words that lost a unit are appended to losers.
+void bid(TransportState& state, std::uint32_t word, double step,
+         std::vector<std::uint32_t>& losers) {
   TransportWord& w = state.words[word];
   const std::size_t copies = w.held.size() + w.deficit;
   struct Offer {
@@ -57,14 +66,15 @@ void bid(TransportState& state, std::uint32_t word, std::vector<std::uint32_t>& 
       value = nth->key;
     }
     if (value <= w.list.bound) break;
-    state.renew_list(word);
+    step > 0 ? state.renew_short_list(word) : state.renew_list(word);
   }
   if (state.reserve_size > 0) value = std::min(value, state.reserve_price);
   // Without a next best pair there is no price to raise: the search decides.
   if (value == kInfinity) value = w.value;
   for (const Offer& offer : offers) {
     const std::uint32_t before = state.owner[offer.unit];
-    if (offer.key > value || (offer.key == value && before != kNobody)) continue;
+    const bool is_tied = offer.key == value && before != kNobody && step == 0;
+    if (offer.key > value || is_tied) continue;
     if (before != word) {
       if (w.deficit == 0) continue;  // only by rounding: there is one copy for each better unit
       if (before != kNobody) {
@@ -74,20 +84,20 @@ void bid(TransportState& state, std::uint32_t word, std::vector<std::uint32_t>& 
       state.give(offer.unit, word);
       --w.deficit;
     }
-    state.prices[offer.unit] = std::max(state.prices[offer.unit], value - offer.cost);
+    state.prices[offer.unit] = std::max(state.prices[offer.unit], value - offer.cost + step);
   }
   w.value = std::max(w.value, value);
 }
 
-void bid_in_turns(TransportState& state) {
+void bid_in_turns(TransportState& state, double step, std::size_t bids_per_word) {
   std::vector<std::uint32_t> queue(state.words.size());
   std::iota(queue.begin(), queue.end(), 0U);
-  const std::size_t most = kBidsPerWord * state.words.size();
+  const std::size_t most = bids_per_word * state.words.size();
   for (std::size_t head = 0; head < queue.size() && head < most; ++head) {
     const std::uint32_t word = queue[head];
     if (state.words[word].deficit == 0) continue;
     // A word that lost several units waits in the queue once for each; the first turn serves all.
-    bid(state, word, queue);
+    bid(state, word, step, queue);
   }
 }
 
@@ -114,8 +124,8 @@ void match_ties(TransportState& state) {
   parallel_for(state.words.size(), [&](std::size_t k) {
     const TransportWord& word = state.words[k];
     graph.set_row(static_cast<std::uint32_t>(k), [&](std::size_t unit) {
-      return (word.column[unit] <= state.limit) &
-             (word.column[unit] + state.prices[unit] <= word.value);
+      const double key = word.column[unit] + state.prices[unit];
+      return (key <= word.value) & (key < kInfinity);
     });
   });
   const Matching matching = grow_maximum_matching(graph, empty_matching(graph.units(), copies));
@@ -127,6 +137,40 @@ void match_ties(TransportState& state) {
   }
 }
 
+// Searches for units for all copies that lack one; false if it gave up after visiting that many
+// words.
+bool serve_all(TransportState& state, std::size_t patience) {
+  PathSearch search(state);
+  for (std::uint32_t word = 0; word < state.words.size(); ++word) {
+    while (state.words[word].deficit > 0) {
+      if (search.visits() > patience) return false;
+      search.serve(word);
+    }
+  }
+  return true;
+}
+
+// Finds good prices by an auction in which every bid overpays by a step, in rounds of ever smaller
+// steps, and begins anew from them. Whatever the auction gave to whom is forgotten, so the answer
+// is as exact as before; but the searches that are left end within a few words.
+void auction_prices(TransportState& state) {
+  double widest = 0;
+  for (const TransportWord& word : state.words) {
+    for (const Candidate& pair : word.list.pairs) {
+      widest = std::max(widest, pair.cost + state.prices[pair.unit] - word.value);
+    }
+  }
+  for (double step = kFirstStep * widest; step > kLastStep * widest; step /= kStepRatio) {
+    state.take_everything_back();
+    bid_in_turns(state, step, kAuctionBidsPerWord);
+  }
+  state.take_everything_back();
+  parallel_for(
+      state.words.size(), [&](std::size_t k) { state.renew_value(static_cast<std::uint32_t>(k)); },
+      4);
+  match_ties(state);
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> solve_transport(const TransportProblem& problem) {
@@ -134,10 +178,11 @@ std::vector<std::uint32_t> solve_transport(const TransportProblem& problem) {
   check(problem.is_unit_open.size() == problem.costs.units, "one mark a unit");
   TransportState state(problem);
   if (has_many_ties(state)) match_ties(state);
-  bid_in_turns(state);
-  PathSearch search(state);
-  for (std::uint32_t word = 0; word < state.words.size(); ++word) {
-    while (state.words[word].deficit > 0) search.serve(word);
+  bid_in_turns(state, 0, kBidsPerWord);
+  const bool is_served = serve_all(state, kPatience * state.words.size());
+  if (!is_served) {
+    auction_prices(state);
+    serve_all(state, std::numeric_limits<std::size_t>::max());
   }
   std::vector<std::uint32_t> word_of_unit(problem.costs.units, kNoWord);
   for (std::size_t unit = 0; unit < word_of_unit.size(); ++unit) {

@@ -13,7 +13,6 @@ struct TransportProblem {
   const CostMatrix& costs;
   std::span<const std::uint32_t> demand;       // copies of each word; 0 leaves a word out
   std::span<const std::uint8_t> is_unit_open;  // 0 leaves a unit out
-  float limit = 0;                             // pairs that cost more are not used; finite
 };
 
 // Word of every unit, kNoWord where it stays free, such that the sum of costs is least among the

@@ -16,23 +16,30 @@ constexpr std::size_t kSpareCandidates = 16;
 
 }  // namespace
 
-TransportState::TransportState(const TransportProblem& problem) : limit(problem.limit) {
+TransportState::TransportState(const TransportProblem& problem) {
   owner.assign(problem.costs.units, kNobody);
   place.assign(problem.costs.units, 0);
   count_copies(problem);
   set_first_prices(problem);
   parallel_for(
-      words.size(),
-      [&](std::size_t k) {
-        TransportWord& word = words[k];
-        renew_list(static_cast<std::uint32_t>(k));
-        word.value = kInfinity;
-        if (reserve_size > 0) word.value = reserve_price;
-        for (const Candidate& pair : word.list.pairs) {
-          word.value = std::min(word.value, double{pair.cost} + prices[pair.unit]);
-        }
-      },
-      4);
+      words.size(), [&](std::size_t k) { renew_value(static_cast<std::uint32_t>(k)); }, 4);
+}
+
+void TransportState::renew_value(std::uint32_t word) {
+  TransportWord& w = words[word];
+  renew_short_list(word);
+  w.value = reserve_size > 0 ? reserve_price : kInfinity;
+  for (const Candidate& pair : w.list.pairs) {
+    w.value = std::min(w.value, double{pair.cost} + prices[pair.unit]);
+  }
+}
+
+void TransportState::take_everything_back() {
+  for (TransportWord& word : words) {
+    word.deficit += static_cast<std::uint32_t>(word.held.size());
+    word.held.clear();
+  }
+  std::fill(owner.begin(), owner.end(), kNobody);
 }
 
 void TransportState::count_copies(const TransportProblem& problem) {
@@ -79,7 +86,7 @@ void TransportState::set_first_prices(const TransportProblem& problem) {
         }
       },
       1024);
-  float highest = limit;
+  float highest = std::numeric_limits<float>::max();
   if (!zeros.empty()) {
     std::vector<float> ordered;
     for (std::size_t unit = 0; unit < least.size(); ++unit) {
@@ -87,7 +94,7 @@ void TransportState::set_first_prices(const TransportProblem& problem) {
     }
     const auto nth = ordered.end() - words.back().deficit;
     std::nth_element(ordered.begin(), nth, ordered.end());
-    highest = std::min(limit, *nth);
+    highest = std::min(highest, *nth);
   }
   prices.assign(least.size(), kInfinity);
   for (std::size_t unit = 0; unit < least.size(); ++unit) {
@@ -99,9 +106,15 @@ void TransportState::set_first_prices(const TransportProblem& problem) {
 void TransportState::renew_list(std::uint32_t word) {
   TransportWord& w = words[word];
   const double old_bound = w.list.pairs.empty() ? -kInfinity : w.list.bound;
-  w.list = pick_candidates(w.column, prices, {w.width, limit, mix_bits(word)});
+  w.list = pick_candidates(w.column, prices, {w.width, mix_bits(word)});
   // Many equally good units: look at more of them the next time.
   if (w.list.bound <= old_bound) w.width *= 2;
+}
+
+void TransportState::renew_short_list(std::uint32_t word) {
+  TransportWord& w = words[word];
+  w.width = w.first_width;
+  w.list = pick_candidates(w.column, prices, {w.width, mix_bits(word)});
 }
 
 void TransportState::give(std::uint32_t unit, std::uint32_t word) {

@@ -14,7 +14,7 @@ namespace triglyph {
 
 inline constexpr std::uint32_t kNobody = 0xffffffff;
 
-// Invariants: value <= cost + price over all pairs of the word that are allowed, with equality for
+// Invariants: value <= cost + price over all pairs of the word, with equality for
 // the units it holds; the same for the reserve, whose cost is 0. Values and prices never fall, so
 // a list of candidates keeps its bound.
 struct TransportWord {
@@ -38,10 +38,15 @@ struct TransportState {
 
   // Picks candidates by the prices of now, more of them if that did not raise the bound.
   void renew_list(std::uint32_t word);
+  // Picks as many as at first.
+  void renew_short_list(std::uint32_t word);
+  // Sets the word's value to its best pair, by the prices of now.
+  void renew_value(std::uint32_t word);
+  // Takes every unit from its owner; prices stay.
+  void take_everything_back();
   // Hands the unit to the word, from whoever holds it. Counts of copies are the caller's.
   void give(std::uint32_t unit, std::uint32_t word);
 
-  float limit = 0;                   // pairs that cost more are not allowed
   std::vector<std::uint32_t> names;  // of words in the problem; the unwanted word is kNoWord
   std::vector<TransportWord> words;  // those with copies, the unwanted word last
   std::vector<float> zeros;          // column of the unwanted word; empty without one
