@@ -24,7 +24,8 @@ struct MarkArguments {
   std::optional<std::string> message;
   std::optional<std::string> message_hex;
   bool fill = false;
-  std::string layout = "min-degree";
+  std::string layout{name_of(LayoutMethod::MinDegree)};
+  LayoutOptions layout_search;
   std::string assign = "bottleneck";
   std::string cost = "displacement";
   std::uint32_t redundancy = MarkOptions{}.redundancy;
@@ -41,7 +42,8 @@ struct MarkArguments {
     const std::string text = message.value_or(kDefaultMessage);
     settings.message = message_hex ? from_hex(*message_hex) : Message(text.begin(), text.end());
     scheme.apply_to(settings);
-    settings.layout = layout_method(layout);
+    settings.layout = layout_search;
+    settings.layout.method = layout_method(layout);
     settings.assign = assign_method(assign);
     settings.cost = cost_function(cost);
     settings.redundancy = redundancy;
@@ -141,6 +143,22 @@ int run_mark(const MarkArguments& arguments) {
   return failed == 0 ? kDone : kSomeFailed;
 }
 
+void add_layout_options(CLI::App& verb, MarkArguments& arguments) {
+  const auto names = layout_names();
+  verb.add_option("--layout", arguments.layout, "first-fit is un-optimised")
+      ->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())))
+      ->capture_default_str();
+  verb.add_option("--layout-iterations", arguments.layout_search.iterations,
+                  "Passes over the candidates of a layout that searches")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  verb.add_option("--layout-seconds", arguments.layout_search.seconds,
+                  "Search for so long instead; the result then depends on the machine")
+      ->check(CLI::NonNegativeNumber);
+  verb.add_option("--layout-seed", arguments.layout_search.seed, "Random numbers of the search")
+      ->capture_default_str();
+}
+
 }  // namespace
 
 void add_mark_verb(CLI::App& app, Action& action) {
@@ -157,9 +175,7 @@ void add_mark_verb(CLI::App& app, Action& action) {
                               "A random message as long as the capacity, the paper's experiment");
   message->excludes(hex)->excludes(fill);
   hex->excludes(fill);
-  verb->add_option("--layout", arguments->layout, "first-fit is un-optimised")
-      ->check(CLI::IsMember({"first-fit", "min-degree"}))
-      ->capture_default_str();
+  add_layout_options(*verb, *arguments);
   verb->add_option("--assign", arguments->assign, "sequential is un-optimised")
       ->check(CLI::IsMember({"sequential", "bottleneck", "sum"}))
       ->capture_default_str();

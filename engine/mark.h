@@ -32,7 +32,7 @@ struct MarkOptions {
   WordFormat format;
   SchemeOptions scheme_options;
   ConflictRule conflict_rule = ConflictRule::ReadWrite;
-  LayoutMethod layout = LayoutMethod::MinDegree;
+  LayoutOptions layout;
   AssignMethod assign = AssignMethod::Bottleneck;
   std::uint32_t redundancy = 32;  // wanted units a part; 0: as many as there are
   // A unit that would move a point farther than this share of the bounding box's diagonal is used

@@ -20,7 +20,7 @@ struct JobSettings {
   std::optional<int> part_bits;
   std::optional<double> step;
   CostFunction cost = CostFunction::Displacement;
-  LayoutMethod layout = MarkOptions{}.layout;
+  LayoutOptions layout;
   AssignMethod assign = MarkOptions{}.assign;
   std::uint32_t redundancy = MarkOptions{}.redundancy;
   double max_move_rel_diag = MarkOptions{}.max_move_rel_diag;

@@ -46,7 +46,13 @@ bool apply(const std::string& key, const Json& value, JobSettings& settings) {
   } else if (key == "scheme") {
     settings.scheme = value.get<std::string>();
   } else if (key == "layout") {
-    settings.layout = layout_method(value.get<std::string>());
+    settings.layout.method = layout_method(value.get<std::string>());
+  } else if (key == "layout_iterations") {
+    settings.layout.iterations = value.get<std::uint32_t>();
+  } else if (key == "layout_seconds") {
+    settings.layout.seconds = value.get<double>();
+  } else if (key == "layout_seed") {
+    settings.layout.seed = value.get<std::uint64_t>();
   } else if (key == "assign") {
     settings.assign = assign_method(value.get<std::string>());
   } else if (key == "cost") {

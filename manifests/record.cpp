@@ -34,15 +34,13 @@ Status status_named(const std::string& name) {
 
 Json options_of(const Record& record) {
   const MarkOptions& options = record.options;
-  return {{"layout", name_of(options.layout)},
-          {"assign", name_of(options.assign)},
-          {"cost", name_of(options.scheme_options.cost)},
-          {"redundancy", options.redundancy},
-          {"max_move_rel_diag", options.max_move_rel_diag},
-          {"marker_bits", record.format.marker_bits},
-          {"subscript_bits", record.format.subscript_bits},
-          {"part_bits", record.format.part_bits},
-          {"step", options.scheme_options.step}};
+  return {
+      {"layout", name_of(options.layout.method)}, {"layout_iterations", options.layout.iterations},
+      {"layout_seconds", options.layout.seconds}, {"layout_seed", options.layout.seed},
+      {"assign", name_of(options.assign)},        {"cost", name_of(options.scheme_options.cost)},
+      {"redundancy", options.redundancy},         {"max_move_rel_diag", options.max_move_rel_diag},
+      {"marker_bits", record.format.marker_bits}, {"subscript_bits", record.format.subscript_bits},
+      {"part_bits", record.format.part_bits},     {"step", options.scheme_options.step}};
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ void BM_Layout(benchmark::State& state, LayoutMethod method) {
   for (auto _ : state) {
     const Conflicts conflicts(subject.units, subject.mesh.positions.size(),
                               ConflictRule::ReadWrite);
-    units = choose_layout(conflicts, method).size();
+    units = choose_layout(conflicts, {.method = method}).size();
   }
   count_triangles(state, subject.mesh);
   state.counters["units"] = static_cast<double>(units);
@@ -87,10 +87,19 @@ void sizes(benchmark::internal::Benchmark* bench) {
   bench->Arg(10000)->Arg(100000)->Arg(1000000)->Unit(benchmark::kMillisecond)->UseRealTime();
 }
 
+// for solvers that pass over the candidates many times
+void small_sizes(benchmark::internal::Benchmark* bench) {
+  bench->Arg(10000)->Arg(100000)->Unit(benchmark::kMillisecond)->UseRealTime();
+}
+
 BENCHMARK(BM_Halfedges)->Apply(sizes);
 BENCHMARK(BM_FindUnits)->Apply(sizes);
 BENCHMARK_CAPTURE(BM_Layout, first_fit, LayoutMethod::FirstFit)->Apply(sizes);
 BENCHMARK_CAPTURE(BM_Layout, min_degree, LayoutMethod::MinDegree)->Apply(sizes);
+BENCHMARK_CAPTURE(BM_Layout, static_degree, LayoutMethod::StaticDegree)->Apply(sizes);
+BENCHMARK_CAPTURE(BM_Layout, random_degree, LayoutMethod::RandomDegree)->Apply(small_sizes);
+BENCHMARK_CAPTURE(BM_Layout, ant_colony, LayoutMethod::AntColony)->Apply(small_sizes);
+BENCHMARK_CAPTURE(BM_Layout, local_search, LayoutMethod::LocalSearch)->Apply(sizes);
 BENCHMARK(BM_Read)->Apply(sizes);
 BENCHMARK(BM_MarkMessage)->Apply(sizes);
 BENCHMARK(BM_HausdorffOfMove)->Apply(sizes);

@@ -1,16 +1,15 @@
+#include <numeric>
+
 #include "engine/layout/layout.h"
+#include "engine/layout/random_order.h"
 
 namespace triglyph {
 
-std::vector<std::uint32_t> first_fit_layout(const Conflicts& conflicts) {
-  std::vector<std::uint32_t> chosen;
-  std::vector<char> blocked(conflicts.size(), 0);
-  for (std::uint32_t unit = 0; unit < conflicts.size(); ++unit) {
-    if (blocked[unit] != 0) continue;
-    chosen.push_back(unit);
-    conflicts.for_each_neighbour(unit, [&](std::uint32_t other) { blocked[other] = 1; });
-  }
-  return chosen;
+std::vector<std::uint32_t> first_fit_layout(const Conflicts& conflicts,
+                                            const LayoutOptions& /*options*/) {
+  std::vector<std::uint32_t> order(conflicts.size());
+  std::iota(order.begin(), order.end(), 0U);
+  return fit_in_order(conflicts, order);
 }
 
 }  // namespace triglyph

@@ -1,25 +1,40 @@
 #include "engine/layout/layout.h"
 
 #include <algorithm>
+#include <array>
 
 #include "engine/base/error.h"
 
 namespace triglyph {
 
+namespace {
+
+// by LayoutMethod
+constexpr std::array<std::string_view, 6> kNames = {"first-fit",     "min-degree", "static-degree",
+                                                    "random-degree", "ant-colony", "local-search"};
+
+}  // namespace
+
+std::span<const std::string_view> layout_names() {
+  return kNames;
+}
+
 std::string_view name_of(LayoutMethod method) {
-  return method == LayoutMethod::FirstFit ? "first-fit" : "min-degree";
+  return kNames.at(static_cast<std::size_t>(method));
 }
 
 LayoutMethod layout_method(const std::string& name) {
-  for (const LayoutMethod method : {LayoutMethod::FirstFit, LayoutMethod::MinDegree}) {
-    if (name == name_of(method)) return method;
-  }
-  throw Error(ErrorCode::Usage, {}, "", "unknown layout '" + name + "'");
+  const auto at = std::find(kNames.begin(), kNames.end(), name);
+  if (at == kNames.end()) throw Error(ErrorCode::Usage, {}, "", "unknown layout '" + name + "'");
+  return static_cast<LayoutMethod>(at - kNames.begin());
 }
 
-std::vector<std::uint32_t> choose_layout(const Conflicts& conflicts, LayoutMethod method) {
-  return method == LayoutMethod::FirstFit ? first_fit_layout(conflicts)
-                                          : min_degree_layout(conflicts);
+std::vector<std::uint32_t> choose_layout(const Conflicts& conflicts, const LayoutOptions& options) {
+  using Solver = std::vector<std::uint32_t> (*)(const Conflicts&, const LayoutOptions&);
+  static constexpr std::array<Solver, kNames.size()> kSolvers = {
+      first_fit_layout,     min_degree_layout, static_degree_layout,
+      random_degree_layout, ant_colony_layout, local_search_layout};
+  return kSolvers.at(static_cast<std::size_t>(options.method))(conflicts, options);
 }
 
 std::uint32_t layout_bound(const Conflicts& conflicts) {

@@ -101,7 +101,7 @@ TEST(Mark, UnitsAreDisjointAndOnlyTheirPointsMove) {
 
 TEST(Mark, OptimisedMovesLessThanUnoptimised) {
   MarkOptions plain;
-  plain.layout = LayoutMethod::FirstFit;
+  plain.layout.method = LayoutMethod::FirstFit;
   plain.assign = AssignMethod::Sequential;
   MarkOptions max;  // both with all repeats, so that they solve the same problem
   max.max_move_rel_diag = 0;

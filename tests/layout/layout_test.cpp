@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <chrono>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -73,8 +74,9 @@ TEST_P(BothRules, LayoutsAreMaximalIndependentAndWithinTheBound) {
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
     const UnitSet units = random_units(seed, 60, 50);
     const Conflicts conflicts(units, 50, GetParam());
-    for (const LayoutMethod method : {LayoutMethod::FirstFit, LayoutMethod::MinDegree}) {
-      const auto chosen = choose_layout(conflicts, method);
+    for (const std::string_view name : layout_names()) {
+      const auto chosen =
+          choose_layout(conflicts, {.method = layout_method(std::string(name)), .iterations = 4});
       EXPECT_TRUE(std::is_sorted(chosen.begin(), chosen.end()));
       EXPECT_LE(chosen.size(), layout_bound(conflicts));
       for (std::uint32_t i = 0; i < units.size(); ++i) {
@@ -145,17 +147,93 @@ TEST(MinDegree, FindsMoreUnitsOnASurface) {
   EXPECT_GT(min_degree * 100, first_fit * 104);
 }
 
+TEST_P(BothRules, LocalSearchFindsTheMaximumOfSmallGraphs) {
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    const UnitSet units = random_units(300 + seed, 16, 20);
+    const Conflicts conflicts(units, 20, GetParam());
+    EXPECT_EQ(local_search_layout(conflicts, {.iterations = 400}).size(),
+              maximum_by_brute_force(units, GetParam()));
+  }
+}
+
+struct SurfaceUnits {
+  UnitSet units =
+      TsqScheme(WordCode(Key::trial(), {}), {}).find_units(test::bumpy_ball().surface());
+  Conflicts conflicts{units, test::bumpy_ball().mesh.positions.size(), ConflictRule::ReadWrite};
+};
+
+TEST(LocalSearch, FindsMoreUnitsOnASurfaceThanAnyOther) {
+  const SurfaceUnits subject;
+  const std::size_t found = local_search_layout(subject.conflicts, {.iterations = 64}).size();
+  for (const std::string_view name : layout_names()) {
+    const LayoutMethod method = layout_method(std::string(name));
+    if (method == LayoutMethod::LocalSearch) continue;
+    const auto other = choose_layout(subject.conflicts, {.method = method, .iterations = 16});
+    EXPECT_GT(found * 100, other.size() * 103) << name;
+  }
+}
+
+TEST(LocalSearch, StopsWhenItsTimeIsUp) {
+  const SurfaceUnits subject;
+  const auto start = std::chrono::steady_clock::now();
+  const auto found = local_search_layout(subject.conflicts, {.seconds = 0.2});
+  EXPECT_GE(found.size(), min_degree_layout(subject.conflicts).size());
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+}
+
+TEST(LocalSearch, PrefersUnitsThatAreWorthMore) {
+  const SurfaceUnits subject;
+  std::vector<float> weights(subject.units.size());
+  for (std::size_t i = 0; i < weights.size(); ++i) weights[i] = i % 4 == 0 ? 1.0F : 0.6F;
+  const auto heavy_share = [&](const LayoutOptions& options) {
+    const auto chosen = local_search_layout(subject.conflicts, options);
+    const auto heavy =
+        std::count_if(chosen.begin(), chosen.end(), [&](auto unit) { return unit % 4 == 0; });
+    return static_cast<double>(heavy) / static_cast<double>(chosen.size());
+  };
+  EXPECT_LT(heavy_share({}), 0.3);
+  EXPECT_GT(heavy_share({.weights = weights}), 0.45);
+}
+
+TEST(AntColony, LearnsFromItsAnts) {
+  const SurfaceUnits subject;
+  EXPECT_GT(ant_colony_layout(subject.conflicts, {.iterations = 400}).size(),
+            random_degree_layout(subject.conflicts, {.iterations = 400}).size());
+}
+
+TEST(StaticDegree, TakesUnitsByTheirDegree) {
+  // a star: the centre moves the points that the leaves move, one each
+  UnitSet units;
+  units.anchors = {0, 1, 2, 3};
+  units.moved = {{0, 3, 4, 5, 6}, {0, 1, 2, 0, 1, 2}};
+  const Conflicts conflicts(units, 3, ConflictRule::ReadWrite);
+  EXPECT_EQ(static_degree_layout(conflicts), (std::vector<std::uint32_t>{1, 2, 3}));
+  EXPECT_EQ(first_fit_layout(conflicts), (std::vector<std::uint32_t>{0}));
+}
+
+TEST(Layout, IsTheSameForAnyNumberOfThreads) {
+  const SurfaceUnits subject;
+  for (const std::string_view name : layout_names()) {
+    const LayoutOptions options{.method = layout_method(std::string(name)), .iterations = 9};
+    test::expect_same_for_any_threads([&] { return choose_layout(subject.conflicts, options); });
+  }
+}
+
 TEST(Layout, OfNothingIsEmpty) {
   const UnitSet units;
   const Conflicts conflicts(units, 0, ConflictRule::ReadWrite);
-  EXPECT_TRUE(first_fit_layout(conflicts).empty());
-  EXPECT_TRUE(min_degree_layout(conflicts).empty());
+  for (const std::string_view name : layout_names()) {
+    EXPECT_TRUE(choose_layout(conflicts, {.method = layout_method(std::string(name))}).empty());
+  }
   EXPECT_EQ(layout_bound(conflicts), 0U);
 }
 
 TEST(Layout, NamesRoundTrip) {
   EXPECT_EQ(layout_method("first-fit"), LayoutMethod::FirstFit);
-  EXPECT_EQ(layout_method(std::string(name_of(LayoutMethod::MinDegree))), LayoutMethod::MinDegree);
+  EXPECT_EQ(layout_method("local-search"), LayoutMethod::LocalSearch);
+  for (const std::string_view name : layout_names()) {
+    EXPECT_EQ(name_of(layout_method(std::string(name))), name);
+  }
   EXPECT_THROW((void)layout_method("best"), Error);
 }
 

@@ -51,7 +51,7 @@ TEST(Manifest, LinesOverrideDefaultsOverrideOptions) {
   EXPECT_EQ(jobs[1].out, folder / "x.ply");
   EXPECT_EQ(jobs[1].settings.message, (Message{0, 255}));
   EXPECT_EQ(jobs[1].settings.resolved().scheme_options.step, 0.05);
-  EXPECT_EQ(jobs[1].settings.layout, LayoutMethod::FirstFit);
+  EXPECT_EQ(jobs[1].settings.layout.method, LayoutMethod::FirstFit);
   EXPECT_EQ(jobs[1].settings.assign, AssignMethod::Sum);
   EXPECT_EQ(jobs[1].settings.cost, CostFunction::Rms);
   EXPECT_EQ(jobs[1].settings.resolved().format, (WordFormat{4, 9, 16}));

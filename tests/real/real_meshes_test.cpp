@@ -40,7 +40,7 @@ void expect_optimisation_pays(const fs::path& mesh, std::uint32_t least_units,
   const test::TempFolder folder;
   JobSettings plain;
   plain.fill = true;
-  plain.layout = LayoutMethod::FirstFit;
+  plain.layout.method = LayoutMethod::FirstFit;
   plain.assign = AssignMethod::Sequential;
   JobSettings optimised;
   optimised.fill = true;

@@ -26,7 +26,7 @@ struct Chosen {
 Chosen choose(const Scheme& scheme, const Surface& surface) {
   Chosen chosen{scheme.find_units(surface), {}};
   const Conflicts conflicts(chosen.units, surface.mesh.positions.size(), ConflictRule::ReadWrite);
-  chosen.valid = choose_layout(conflicts, LayoutMethod::MinDegree);
+  chosen.valid = choose_layout(conflicts, {});
   return chosen;
 }
 
