@@ -26,6 +26,7 @@ struct MarkArguments {
   bool fill = false;
   std::string layout{name_of(LayoutMethod::MinDegree)};
   LayoutOptions layout_search;
+  std::string conflicts{name_of(MarkOptions{}.conflict_rule)};
   std::string assign = "bottleneck";
   std::string cost = "displacement";
   std::uint32_t redundancy = MarkOptions{}.redundancy;
@@ -44,6 +45,7 @@ struct MarkArguments {
     scheme.apply_to(settings);
     settings.layout = layout_search;
     settings.layout.method = layout_method(layout);
+    settings.conflict_rule = conflict_rule(conflicts);
     settings.assign = assign_method(assign);
     settings.cost = cost_function(cost);
     settings.redundancy = redundancy;
@@ -144,9 +146,8 @@ int run_mark(const MarkArguments& arguments) {
 }
 
 void add_layout_options(CLI::App& verb, MarkArguments& arguments) {
-  const auto names = layout_names();
   verb.add_option("--layout", arguments.layout, "first-fit is un-optimised")
-      ->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())))
+      ->check(CLI::IsMember(strings(layout_names())))
       ->capture_default_str();
   verb.add_option("--layout-iterations", arguments.layout_search.iterations,
                   "Passes over the candidates of a layout that searches")
@@ -176,6 +177,10 @@ void add_mark_verb(CLI::App& app, Action& action) {
   message->excludes(hex)->excludes(fill);
   hex->excludes(fill);
   add_layout_options(*verb, *arguments);
+  verb->add_option("--conflicts", arguments->conflicts,
+                   "Units interfere if one moves what the other reads, or if they share a point")
+      ->check(CLI::IsMember({"read-write", "shared-point"}))
+      ->capture_default_str();
   verb->add_option("--assign", arguments->assign, "sequential is un-optimised")
       ->check(CLI::IsMember({"sequential", "bottleneck", "sum"}))
       ->capture_default_str();

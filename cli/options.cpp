@@ -4,6 +4,10 @@
 
 namespace triglyph {
 
+std::vector<std::string> strings(std::span<const std::string_view> names) {
+  return {names.begin(), names.end()};
+}
+
 void KeyArgument::add_to(CLI::App& verb) {
   verb.add_option("--key-file", file_, "Secret key made by keygen; a public trial key without it")
       ->type_name("FILE");
@@ -18,7 +22,7 @@ Key KeyArgument::load() const {
 
 void SchemeArguments::add_to(CLI::App& verb) {
   verb.add_option("--scheme", scheme_, "Embedding scheme")
-      ->check(CLI::IsMember({"tsq"}))
+      ->check(CLI::IsMember(strings(scheme_names())))
       ->capture_default_str();
   verb.add_option("--marker-bits", marker_bits_, "Bits of the marker, m [the scheme's]")
       ->check(CLI::Range(1, 16));
@@ -29,6 +33,9 @@ void SchemeArguments::add_to(CLI::App& verb) {
       ->check(CLI::Range(2, 32));
   verb.add_option("--step", step_, "Width of a quantiser cell, dimensionless [the scheme's]")
       ->check(CLI::PositiveNumber);
+  verb.add_option("--aie-groups", groups_, "Neighbours that carry a group's bits in aie")
+      ->check(CLI::IsMember({"one", "all"}))
+      ->capture_default_str();
 }
 
 void SchemeArguments::apply_to(JobSettings& settings) const {
@@ -37,6 +44,7 @@ void SchemeArguments::apply_to(JobSettings& settings) const {
   settings.subscript_bits = subscript_bits_;
   settings.part_bits = part_bits_;
   settings.step = step_;
+  settings.groups = aie_groups(groups_);
 }
 
 void MachineArguments::add_threads_to(CLI::App& verb) {

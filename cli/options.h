@@ -3,13 +3,19 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "manifests/job.h"
 
 namespace triglyph {
+
+// Names to choose from, as the parser wants them.
+[[nodiscard]] std::vector<std::string> strings(std::span<const std::string_view> names);
 
 // --key-file. Without it the public trial key is used and a warning printed.
 class KeyArgument {
@@ -33,6 +39,7 @@ class SchemeArguments {
   std::optional<int> subscript_bits_;
   std::optional<int> part_bits_;
   std::optional<double> step_;
+  std::string groups_{name_of(AieGroups::One)};
 };
 
 // --threads and --memory.

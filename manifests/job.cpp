@@ -9,6 +9,8 @@ MarkOptions JobSettings::resolved() const {
   options.format.part_bits = part_bits.value_or(options.format.part_bits);
   options.scheme_options.step = step.value_or(options.scheme_options.step);
   options.scheme_options.cost = cost;
+  options.scheme_options.groups = groups;
+  options.conflict_rule = conflict_rule;
   options.layout = layout;
   options.assign = assign;
   options.redundancy = redundancy;

@@ -19,6 +19,8 @@ struct JobSettings {
   std::optional<int> subscript_bits;
   std::optional<int> part_bits;
   std::optional<double> step;
+  AieGroups groups = AieGroups::One;
+  ConflictRule conflict_rule = MarkOptions{}.conflict_rule;
   CostFunction cost = CostFunction::Displacement;
   LayoutOptions layout;
   AssignMethod assign = MarkOptions{}.assign;

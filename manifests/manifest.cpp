@@ -55,6 +55,10 @@ bool apply(const std::string& key, const Json& value, JobSettings& settings) {
     settings.layout.seed = value.get<std::uint64_t>();
   } else if (key == "assign") {
     settings.assign = assign_method(value.get<std::string>());
+  } else if (key == "aie_groups") {
+    settings.groups = aie_groups(value.get<std::string>());
+  } else if (key == "conflicts") {
+    settings.conflict_rule = conflict_rule(value.get<std::string>());
   } else if (key == "cost") {
     settings.cost = cost_function(value.get<std::string>());
   } else if (key == "redundancy") {

@@ -34,13 +34,20 @@ Status status_named(const std::string& name) {
 
 Json options_of(const Record& record) {
   const MarkOptions& options = record.options;
-  return {
-      {"layout", name_of(options.layout.method)}, {"layout_iterations", options.layout.iterations},
-      {"layout_seconds", options.layout.seconds}, {"layout_seed", options.layout.seed},
-      {"assign", name_of(options.assign)},        {"cost", name_of(options.scheme_options.cost)},
-      {"redundancy", options.redundancy},         {"max_move_rel_diag", options.max_move_rel_diag},
-      {"marker_bits", record.format.marker_bits}, {"subscript_bits", record.format.subscript_bits},
-      {"part_bits", record.format.part_bits},     {"step", options.scheme_options.step}};
+  return {{"layout", name_of(options.layout.method)},
+          {"layout_iterations", options.layout.iterations},
+          {"layout_seconds", options.layout.seconds},
+          {"layout_seed", options.layout.seed},
+          {"conflicts", name_of(options.conflict_rule)},
+          {"assign", name_of(options.assign)},
+          {"cost", name_of(options.scheme_options.cost)},
+          {"redundancy", options.redundancy},
+          {"max_move_rel_diag", options.max_move_rel_diag},
+          {"marker_bits", record.format.marker_bits},
+          {"subscript_bits", record.format.subscript_bits},
+          {"part_bits", record.format.part_bits},
+          {"step", options.scheme_options.step},
+          {"aie_groups", name_of(options.scheme_options.groups)}};
 }
 
 }  // namespace
@@ -115,6 +122,7 @@ RecordedMark parse_record(const std::string& line) try {
   const auto& options = json.at("options");
   mark.options.scheme = json.at("scheme").get<std::string>();
   mark.options.scheme_options.step = options.at("step").get<double>();
+  mark.options.scheme_options.groups = aie_groups(options.at("aie_groups").get<std::string>());
   mark.options.format = {options.at("marker_bits").get<int>(),
                          options.at("subscript_bits").get<int>(),
                          options.at("part_bits").get<int>()};

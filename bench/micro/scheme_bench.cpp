@@ -7,7 +7,6 @@
 #include "engine/mesh/halfedges.h"
 #include "engine/mesh/sample_shapes.h"
 #include "engine/metric/hausdorff.h"
-#include "engine/scheme/tsq.h"
 
 namespace triglyph {
 namespace {
@@ -15,14 +14,16 @@ namespace {
 struct Subject {
   Mesh mesh;
   Halfedges halfedges;
-  WordCode code{Key::trial(), {}};
-  TsqScheme scheme{code, {}};
+  MarkOptions options;
+  std::unique_ptr<Scheme> scheme;
   UnitSet units;
 
-  explicit Subject(std::size_t triangles)
+  explicit Subject(std::size_t triangles, const std::string& name = "tsq")
       : mesh(make_sample_shape(SampleShape::Closed, triangles, 1)),
         halfedges(build_halfedges(mesh)),
-        units(scheme.find_units(surface())) {}
+        options(default_mark_options(name, false)),
+        scheme(make_scheme(name, WordCode(Key::trial(), options.format), options.scheme_options)),
+        units(scheme->find_units(surface())) {}
   [[nodiscard]] Surface surface() const { return {mesh, halfedges}; }
 };
 
@@ -37,9 +38,9 @@ void BM_Halfedges(benchmark::State& state) {
   count_triangles(state, subject.mesh);
 }
 
-void BM_FindUnits(benchmark::State& state) {
-  const Subject subject(static_cast<std::size_t>(state.range(0)));
-  for (auto _ : state) benchmark::DoNotOptimize(subject.scheme.find_units(subject.surface()));
+void BM_FindUnits(benchmark::State& state, const std::string& scheme) {
+  const Subject subject(static_cast<std::size_t>(state.range(0)), scheme);
+  for (auto _ : state) benchmark::DoNotOptimize(subject.scheme->find_units(subject.surface()));
   count_triangles(state, subject.mesh);
 }
 
@@ -55,18 +56,19 @@ void BM_Layout(benchmark::State& state, LayoutMethod method) {
   state.counters["units"] = static_cast<double>(units);
 }
 
-void BM_Read(benchmark::State& state) {
-  const Subject subject(static_cast<std::size_t>(state.range(0)));
-  for (auto _ : state) benchmark::DoNotOptimize(subject.scheme.read(subject.surface()));
+void BM_Read(benchmark::State& state, const std::string& scheme) {
+  const Subject subject(static_cast<std::size_t>(state.range(0)), scheme);
+  for (auto _ : state) benchmark::DoNotOptimize(subject.scheme->read(subject.surface()));
   count_triangles(state, subject.mesh);
 }
 
-void BM_MarkMessage(benchmark::State& state) {
-  const Subject subject(static_cast<std::size_t>(state.range(0)));
+void BM_MarkMessage(benchmark::State& state, const std::string& scheme) {
+  const Subject subject(static_cast<std::size_t>(state.range(0)), scheme);
   const Message message{1, 2, 3, 4, 5, 6, 7, 8};
   for (auto _ : state) {
     benchmark::DoNotOptimize(mark(
-        subject.surface(), message, Key::trial(), {}, [](const Vec3& point) { return point; }, 0));
+        subject.surface(), message, Key::trial(), subject.options,
+        [](const Vec3& point) { return point; }, 0));
   }
   count_triangles(state, subject.mesh);
 }
@@ -93,15 +95,18 @@ void small_sizes(benchmark::internal::Benchmark* bench) {
 }
 
 BENCHMARK(BM_Halfedges)->Apply(sizes);
-BENCHMARK(BM_FindUnits)->Apply(sizes);
+BENCHMARK_CAPTURE(BM_FindUnits, tsq, "tsq")->Apply(sizes);
+BENCHMARK_CAPTURE(BM_FindUnits, aie, "aie")->Apply(sizes);
 BENCHMARK_CAPTURE(BM_Layout, first_fit, LayoutMethod::FirstFit)->Apply(sizes);
 BENCHMARK_CAPTURE(BM_Layout, min_degree, LayoutMethod::MinDegree)->Apply(sizes);
 BENCHMARK_CAPTURE(BM_Layout, static_degree, LayoutMethod::StaticDegree)->Apply(sizes);
 BENCHMARK_CAPTURE(BM_Layout, random_degree, LayoutMethod::RandomDegree)->Apply(small_sizes);
 BENCHMARK_CAPTURE(BM_Layout, ant_colony, LayoutMethod::AntColony)->Apply(small_sizes);
 BENCHMARK_CAPTURE(BM_Layout, local_search, LayoutMethod::LocalSearch)->Apply(sizes);
-BENCHMARK(BM_Read)->Apply(sizes);
-BENCHMARK(BM_MarkMessage)->Apply(sizes);
+BENCHMARK_CAPTURE(BM_Read, tsq, "tsq")->Apply(sizes);
+BENCHMARK_CAPTURE(BM_Read, aie, "aie")->Apply(sizes);
+BENCHMARK_CAPTURE(BM_MarkMessage, tsq, "tsq")->Apply(sizes);
+BENCHMARK_CAPTURE(BM_MarkMessage, aie, "aie")->Apply(sizes);
 BENCHMARK(BM_HausdorffOfMove)->Apply(sizes);
 
 }  // namespace

@@ -27,10 +27,10 @@ constexpr float kAllFinite = std::numeric_limits<float>::max();
 
 // Infinite where the costs are above the limit.
 CostMatrix mask_above(const CostMatrix& costs, float limit) {
-  CostMatrix masked{costs.units, costs.words, std::vector<float>(costs.values.size())};
+  CostMatrix masked{costs.units, costs.words, std::vector<float>(costs.values.size(), kInfeasible)};
   parallel_blocks(costs.values.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      masked.values[i] = costs.values[i] <= limit ? costs.values[i] : kInfeasible;
+      if (costs.values[i] <= limit) masked.values[i] = costs.values[i];
     }
   });
   return masked;

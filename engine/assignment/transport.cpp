@@ -160,9 +160,11 @@ void auction_prices(TransportState& state) {
       widest = std::max(widest, pair.cost + state.prices[pair.unit] - word.value);
     }
   }
-  for (double step = kFirstStep * widest; step > kLastStep * widest; step /= kStepRatio) {
+  double step = kFirstStep * widest;
+  while (step > kLastStep * widest) {
     state.take_everything_back();
     bid_in_turns(state, step, kAuctionBidsPerWord);
+    step /= kStepRatio;
   }
   state.take_everything_back();
   parallel_for(

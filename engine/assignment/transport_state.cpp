@@ -28,7 +28,8 @@ TransportState::TransportState(const TransportProblem& problem) {
 void TransportState::renew_value(std::uint32_t word) {
   TransportWord& w = words[word];
   renew_short_list(word);
-  w.value = reserve_size > 0 ? reserve_price : kInfinity;
+  w.value = kInfinity;
+  if (reserve_size > 0) w.value = reserve_price;
   for (const Candidate& pair : w.list.pairs) {
     w.value = std::min(w.value, double{pair.cost} + prices[pair.unit]);
   }

@@ -1,5 +1,7 @@
 #include "engine/layout/conflicts.h"
 
+#include "engine/base/error.h"
+
 namespace triglyph {
 namespace {
 
@@ -18,6 +20,17 @@ PointLists transpose(const PointLists& lists, std::size_t points) {
 }
 
 }  // namespace
+
+std::string_view name_of(ConflictRule rule) {
+  return rule == ConflictRule::ReadWrite ? "read-write" : "shared-point";
+}
+
+ConflictRule conflict_rule(const std::string& name) {
+  for (const ConflictRule rule : {ConflictRule::ReadWrite, ConflictRule::SharedPoint}) {
+    if (name == name_of(rule)) return rule;
+  }
+  throw Error(ErrorCode::Usage, {}, "", "unknown rule of conflicts '" + name + "'");
+}
 
 Conflicts::Conflicts(const UnitSet& units, std::size_t points, ConflictRule rule)
     : moved_(rule == ConflictRule::SharedPoint ? &units.read_or_moved() : &units.moved),

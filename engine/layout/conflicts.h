@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/scheme/scheme.h"
@@ -14,6 +16,10 @@ enum class ConflictRule {
   ReadWrite,    // one may not move what the other reads; exact, and leaves room for more units
   SharedPoint,  // the paper's: no point in common, moved or read
 };
+
+// "read-write", "shared-point"; the inverse throws Error Usage.
+[[nodiscard]] std::string_view name_of(ConflictRule rule);
+[[nodiscard]] ConflictRule conflict_rule(const std::string& name);
 
 class Conflicts {
  public:

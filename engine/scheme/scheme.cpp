@@ -1,9 +1,36 @@
 #include "engine/scheme/scheme.h"
 
+#include <algorithm>
+#include <array>
+
 #include "engine/base/error.h"
+#include "engine/scheme/aie.h"
 #include "engine/scheme/tsq.h"
 
 namespace triglyph {
+namespace {
+
+struct KnownScheme {
+  SchemeDefaults (*defaults)();
+  std::unique_ptr<Scheme> (*make)(const WordCode& code, const SchemeOptions& options);
+};
+
+template <typename Kind>
+std::unique_ptr<Scheme> make(const WordCode& code, const SchemeOptions& options) {
+  return std::make_unique<Kind>(code, options);
+}
+
+constexpr std::array<std::string_view, 2> kNames = {"tsq", "aie"};
+constexpr std::array<KnownScheme, kNames.size()> kSchemes = {
+    {{TsqScheme::defaults, make<TsqScheme>}, {AieScheme::defaults, make<AieScheme>}}};
+
+const KnownScheme& scheme_named(const std::string& name) {
+  const auto at = std::find(kNames.begin(), kNames.end(), name);
+  if (at == kNames.end()) throw Error(ErrorCode::Usage, {}, "", "unknown scheme '" + name + "'");
+  return kSchemes.at(static_cast<std::size_t>(at - kNames.begin()));
+}
+
+}  // namespace
 
 std::string_view name_of(CostFunction cost) {
   return cost == CostFunction::Displacement ? "displacement" : "rms";
@@ -16,15 +43,28 @@ CostFunction cost_function(const std::string& name) {
   throw Error(ErrorCode::Usage, {}, "", "unknown cost '" + name + "'");
 }
 
+std::string_view name_of(AieGroups groups) {
+  return groups == AieGroups::One ? "one" : "all";
+}
+
+AieGroups aie_groups(const std::string& name) {
+  for (const AieGroups groups : {AieGroups::One, AieGroups::All}) {
+    if (name == name_of(groups)) return groups;
+  }
+  throw Error(ErrorCode::Usage, {}, "", "unknown groups '" + name + "'");
+}
+
+std::span<const std::string_view> scheme_names() {
+  return kNames;
+}
+
 SchemeDefaults scheme_defaults(const std::string& name) {
-  if (name == "tsq") return TsqScheme::defaults();
-  throw Error(ErrorCode::Usage, {}, "", "unknown scheme '" + name + "'");
+  return scheme_named(name).defaults();
 }
 
 std::unique_ptr<Scheme> make_scheme(const std::string& name, const WordCode& code,
                                     const SchemeOptions& options) {
-  if (name == "tsq") return std::make_unique<TsqScheme>(code, options);
-  throw Error(ErrorCode::Usage, {}, "", "unknown scheme '" + name + "'");
+  return scheme_named(name).make(code, options);
 }
 
 }  // namespace triglyph

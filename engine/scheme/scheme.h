@@ -30,6 +30,10 @@ struct PointLists {
   std::vector<std::uint32_t> points;
 
   [[nodiscard]] std::size_t size() const { return offsets.size() - 1; }
+  void append(std::span<const std::uint32_t> list) {
+    points.insert(points.end(), list.begin(), list.end());
+    offsets.push_back(static_cast<std::uint32_t>(points.size()));
+  }
   [[nodiscard]] std::span<const std::uint32_t> operator[](std::size_t i) const {
     return {points.data() + offsets[i], points.data() + offsets[i + 1]};
   }
@@ -58,9 +62,20 @@ enum class CostFunction {
 [[nodiscard]] std::string_view name_of(CostFunction cost);
 [[nodiscard]] CostFunction cost_function(const std::string& name);
 
+// Which neighbours of a basis carry a group's bits.
+enum class AieGroups {
+  One,  // one a group: more units
+  All,  // all that can be told apart: a group survives damage to some of its points
+};
+
+// "one", "all"; the inverse throws Error Usage.
+[[nodiscard]] std::string_view name_of(AieGroups groups);
+[[nodiscard]] AieGroups aie_groups(const std::string& name);
+
 struct SchemeOptions {
   double step = 0.02;  // width of a quantiser cell, dimensionless
   CostFunction cost = CostFunction::Displacement;
+  AieGroups groups = AieGroups::One;
 };
 
 // One unit and the word it is to carry.
@@ -105,10 +120,13 @@ struct SchemeDefaults {
   double fill_step = 0;
 };
 
+[[nodiscard]] std::span<const std::string_view> scheme_names();
+
 // Throws Error Usage for an unknown name.
 [[nodiscard]] SchemeDefaults scheme_defaults(const std::string& name);
 
-// "tsq": similarity invariant. Throws Error Usage for an unknown name or options out of range.
+// "tsq": similarity invariant; "aie": affine invariant. Throws Error Usage for an unknown name or
+// options out of range.
 [[nodiscard]] std::unique_ptr<Scheme> make_scheme(const std::string& name, const WordCode& code,
                                                   const SchemeOptions& options);
 

@@ -68,18 +68,28 @@ TEST(Mark, SurvivesReorderingSimilarityRoundingAndCropping) {
             kMessage);
 }
 
-TEST(Mark, AnotherKeyAndAnUnmarkedMeshYieldNothing) {
-  const Mesh marked = marked_ball();
-  for (int i = 0; i < 20; ++i) EXPECT_FALSE(read(marked, Key::generate()).message);
-  EXPECT_FALSE(read(test::bumpy_ball().mesh).message);
+class EverySchemesMark : public testing::TestWithParam<std::string_view> {
+ protected:
+  MarkOptions options_ = default_mark_options(std::string(GetParam()), false);
+};
+INSTANTIATE_TEST_SUITE_P(All, EverySchemesMark,
+                         testing::ValuesIn(scheme_names().begin(), scheme_names().end()),
+                         [](const auto& scheme) { return std::string(scheme.param); });
+
+TEST_P(EverySchemesMark, AnotherKeyAndAnUnmarkedMeshYieldNothing) {
+  const Mesh marked = marked_ball(options_);
+  EXPECT_EQ(read(marked, Key::trial(), options_).message, kMessage);
+  for (int i = 0; i < 20; ++i) EXPECT_FALSE(read(marked, Key::generate(), options_).message);
+  EXPECT_FALSE(read(test::bumpy_ball().mesh, Key::trial(), options_).message);
 }
 
 // 200 unmarked meshes: no false alarm. With a 32-bit tag one is expected in 20 million such runs.
-TEST(Mark, TwoHundredUnmarkedMeshesRaiseNoAlarm) {
+TEST_P(EverySchemesMark, TwoHundredUnmarkedMeshesRaiseNoAlarm) {
   const SampleShape shapes[] = {SampleShape::Closed, SampleShape::Open, SampleShape::HighGenus};
   std::size_t markers = 0;
   for (std::uint64_t i = 0; i < 200; ++i) {
-    const Extraction found = read(make_sample_shape(shapes[i % 3], 1000 + 20 * i, i));
+    const Extraction found =
+        read(make_sample_shape(shapes[i % 3], 1000 + 20 * i, i), Key::trial(), options_);
     EXPECT_FALSE(found.message);
     markers += found.readings.size();
   }

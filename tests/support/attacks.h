@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -42,25 +43,48 @@ inline Mesh shuffled(const Mesh& mesh, std::uint64_t seed) {
   return result;
 }
 
-// Random rotation (uniform quaternion), scale from 1e-3 to 1e3, shift of up to ten mesh sizes.
-inline Mesh moved_rigidly_and_scaled(const Mesh& mesh, std::uint64_t seed) {
-  double q[4];
+// Rotation by a uniform random quaternion, as rows.
+inline std::array<Vec3, 3> random_rotation(std::uint64_t seed) {
+  std::array<double, 4> q{};
   double norm = 0;
-  for (int i = 0; i < 4; ++i) {
-    q[i] = random_unit(seed, 0, static_cast<std::uint64_t>(i)) +
-           random_unit(seed, 1, static_cast<std::uint64_t>(i)) - 1;
+  for (std::size_t i = 0; i < 4; ++i) {
+    q[i] = random_unit(seed, 0, i) + random_unit(seed, 1, i) - 1;
     norm += q[i] * q[i];
   }
   norm = std::sqrt(norm);
   const double w = q[0] / norm, x = q[1] / norm, y = q[2] / norm, z = q[3] / norm;
+  return {Vec3(1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)),
+          Vec3(2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)),
+          Vec3(2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y))};
+}
+
+inline Vec3 transformed(const std::array<Vec3, 3>& rows, const Vec3& p) {
+  return Vec3(dot(rows[0], p), dot(rows[1], p), dot(rows[2], p));
+}
+
+// Random rotation (uniform quaternion), scale from 1e-3 to 1e3, shift of up to ten mesh sizes.
+inline Mesh moved_rigidly_and_scaled(const Mesh& mesh, std::uint64_t seed) {
+  const auto rotation = random_rotation(seed);
   const double scale = std::pow(10.0, 6 * random_unit(seed, 2, 0) - 3);
-  const Vec3 rows[3] = {Vec3(1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)),
-                        Vec3(2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)),
-                        Vec3(2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y))};
   Mesh result = mesh;
   for (Vec3& p : result.positions) {
-    p = Vec3(dot(rows[0], p), dot(rows[1], p), dot(rows[2], p)) * scale +
-        Vec3(3, -5, 7) * scale * random_unit(seed, 3, 0);
+    p = transformed(rotation, p) * scale + Vec3(3, -5, 7) * scale * random_unit(seed, 3, 0);
+  }
+  return result;
+}
+
+// Random affine map whose greatest and least stretch are `condition` apart; a reflection keeps the
+// faces' order of corners, so it turns the surface inside out.
+inline Mesh affinely_mapped(const Mesh& mesh, double condition, bool reflect, std::uint64_t seed) {
+  const auto before = random_rotation(seed + 1000);
+  const auto after = random_rotation(seed + 2000);
+  const Vec3 stretch(condition, 1 + (condition - 1) * random_unit(seed, 5, 0), reflect ? -1 : 1);
+  Mesh result = mesh;
+  for (Vec3& p : result.positions) {
+    const Vec3 turned = transformed(before, p);
+    p = transformed(after,
+                    Vec3(turned[0] * stretch[0], turned[1] * stretch[1], turned[2] * stretch[2])) +
+        Vec3(3, -5, 7) * random_unit(seed, 6, 0);
   }
   return result;
 }

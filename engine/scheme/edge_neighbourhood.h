@@ -1,0 +1,57 @@
+// The surroundings of an edge as AIE reads them: four basis points and four groups of neighbours.
+//
+//            .------ c ------.          a -> b: the edge, in the direction it is read;
+//             \  A  / \  C  /           c: apex of the face to its left, d: to its right.
+//              \   /   \   /            The outer apex behind c-a joins the group of a, behind
+//               \ /     \ /             b-c that of c, behind d-b that of b, behind a-d that
+//                a ----- b              of d: reading the edge the other way round exchanges
+//               / \     / \             a with b and c with d, and the groups with them.
+//              /   \   /   \            .
+//             /  D  \ /  B  \           .
+//            '------ d ------'
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "engine/scheme/scheme.h"
+
+namespace triglyph {
+
+// Which neighbours carry a group's bits.
+enum class GroupRule {
+  OuterApexes,          // one a group: the apexes behind the four outer edges
+  MiddleNeighbours,     // one a group: of the neighbours of one basis point alone, the middle one
+  ExclusiveNeighbours,  // all neighbours of one basis point alone
+  NeighboursAndApexes,  // these, and the outer apex
+};
+
+struct EdgeNeighbourhood {
+  static constexpr std::size_t kMaxPoints = 32;
+
+  std::array<std::uint32_t, 4> basis{};  // a, b, c, d
+  std::array<std::size_t, 5> ends{};     // group k is points[ends[k]] .. points[ends[k + 1] - 1]
+  std::array<std::uint32_t, kMaxPoints> points{};
+
+  [[nodiscard]] std::span<const std::uint32_t> group(std::size_t k) const {
+    return {points.data() + ends[k], points.data() + ends[k + 1]};
+  }
+  [[nodiscard]] std::span<const std::uint32_t> all_groups() const {
+    return {points.data(), points.data() + ends[4]};
+  }
+};
+
+// The neighbourhood of an interior edge, read along its first halfedge or its second. Nothing at a
+// boundary, where a group would be empty, where points coincide, or with more than kMaxPoints.
+[[nodiscard]] std::optional<EdgeNeighbourhood> neighbourhood_of(const Surface& surface,
+                                                                std::uint32_t edge, bool reversed,
+                                                                GroupRule rule);
+
+// a, b, c, d alone; nothing at a boundary or where two faces share all their points.
+[[nodiscard]] std::optional<std::array<std::uint32_t, 4>> basis_of(const Surface& surface,
+                                                                   std::uint32_t edge,
+                                                                   bool reversed);
+
+}  // namespace triglyph

@@ -1,0 +1,210 @@
+// What every scheme promises, whatever its invariants are.
+#include "engine/scheme/scheme.h"
+
+#include <numeric>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "engine/base/error.h"
+#include "engine/base/random.h"
+#include "engine/layout/layout.h"
+#include "engine/mark.h"
+#include "tests/support/arenas.h"
+#include "tests/support/attacks.h"
+#include "tests/support/shapes.h"
+
+namespace triglyph {
+namespace {
+
+class EveryScheme : public testing::TestWithParam<std::string_view> {
+ protected:
+  [[nodiscard]] std::unique_ptr<Scheme> scheme(CostFunction cost = {}) const {
+    SchemeOptions options = defaults_.scheme_options;
+    options.cost = cost;
+    return make_scheme(std::string(GetParam()), code_, options);
+  }
+
+  MarkOptions defaults_ = default_mark_options(std::string(GetParam()), false);
+  WordCode code_{Key::trial(), defaults_.format};
+};
+INSTANTIATE_TEST_SUITE_P(All, EveryScheme,
+                         testing::ValuesIn(scheme_names().begin(), scheme_names().end()),
+                         [](const auto& scheme) { return std::string(scheme.param); });
+
+struct Chosen {
+  UnitSet units;
+  std::vector<std::uint32_t> valid;
+};
+
+Chosen choose(const Scheme& scheme, const Surface& surface) {
+  Chosen chosen{scheme.find_units(surface), {}};
+  const Conflicts conflicts(chosen.units, surface.mesh.positions.size(), ConflictRule::ReadWrite);
+  chosen.valid = choose_layout(conflicts, {});
+  return chosen;
+}
+
+std::vector<Placement> random_placements(const Chosen& chosen, std::size_t words) {
+  std::vector<Placement> placements;
+  for (const std::uint32_t unit : chosen.valid) {
+    placements.push_back({unit, static_cast<std::uint32_t>(random_bits(1, 2, unit) % words)});
+  }
+  return placements;
+}
+
+TEST_P(EveryScheme, AnchorsAscendAndUnitsReadWhatTheyMove) {
+  const auto& ball = test::bumpy_ball();
+  const UnitSet units = scheme()->find_units(ball.surface());
+  EXPECT_GT(units.size(), 500U);
+  EXPECT_EQ(std::adjacent_find(units.anchors.begin(), units.anchors.end(), std::greater_equal()),
+            units.anchors.end());
+  for (std::size_t i = 0; i < units.size(); ++i) {
+    const auto moved = units.moved[i];
+    const auto read = units.read_or_moved()[i];
+    const std::set<std::uint32_t> reads(read.begin(), read.end());
+    EXPECT_FALSE(moved.empty());
+    EXPECT_EQ(reads.size(), read.size());
+    for (const std::uint32_t point : moved) EXPECT_EQ(reads.count(point), 1U);
+  }
+}
+
+TEST_P(EveryScheme, EveryPlacedWordIsReadBackAtItsAnchor) {
+  const auto& ball = test::bumpy_ball();
+  const auto scheme = this->scheme();
+  const Chosen chosen = choose(*scheme, ball.surface());
+  const auto words = code_.fill_words(std::min(code_.capacity(), 256U));
+  const auto placements = random_placements(chosen, words.size());
+  const Embedding embedding = scheme->embed(ball.surface(), chosen.units, placements, words);
+  const Mesh marked{embedding.positions, ball.mesh.triangles};
+  const auto readings = scheme->read({marked, ball.halfedges});
+
+  const std::set<std::uint32_t> failed(embedding.failed.begin(), embedding.failed.end());
+  EXPECT_LT(failed.size(), placements.size() / 20);
+  for (std::uint32_t i = 0; i < placements.size(); ++i) {
+    if (failed.count(i) != 0) continue;
+    const std::uint32_t anchor = chosen.units.anchors[placements[i].unit];
+    const auto at = std::lower_bound(
+        readings.begin(), readings.end(), anchor,
+        [](const Reading& reading, std::uint32_t a) { return reading.anchor < a; });
+    ASSERT_TRUE(at != readings.end() && at->anchor == anchor);
+    EXPECT_EQ(at->word, words[placements[i].word]);
+    EXPECT_LT(at->worst_offset, 1e-4);
+    EXPECT_GT(at->weight, 0.999);
+  }
+}
+
+TEST_P(EveryScheme, CostIsTheMoveOfTheUnit) {
+  const auto& ball = test::bumpy_ball();
+  const auto words = code_.fill_words(std::min(code_.capacity(), 64U));
+  for (const CostFunction cost : {CostFunction::Displacement, CostFunction::Rms}) {
+    const auto scheme = this->scheme(cost);
+    const Chosen chosen = choose(*scheme, ball.surface());
+    const CostMatrix costs = scheme->costs(ball.surface(), chosen.units, chosen.valid, words);
+    const auto placements = random_placements(chosen, words.size());
+    const Embedding embedding = scheme->embed(ball.surface(), chosen.units, placements, words);
+    const std::set<std::uint32_t> failed(embedding.failed.begin(), embedding.failed.end());
+    for (std::uint32_t i = 0; i < placements.size(); ++i) {
+      const float expected = costs.at(i, placements[i].word);
+      EXPECT_EQ(expected == kInfeasible, failed.count(i) != 0);
+      if (failed.count(i) != 0) continue;
+      double farthest = 0, sum = 0;
+      const auto moved = chosen.units.moved[placements[i].unit];
+      for (const std::uint32_t point : moved) {
+        const double move = (embedding.positions[point] - ball.mesh.positions[point]).norm();
+        farthest = std::max(farthest, move);
+        sum += move * move;
+      }
+      const double rms = std::sqrt(sum / static_cast<double>(moved.size()));
+      const double actual = cost == CostFunction::Displacement ? farthest : rms;
+      EXPECT_NEAR(actual, expected, 1e-5 * actual + 1e-9);
+    }
+  }
+}
+
+TEST_P(EveryScheme, ReadsTheSameUnderAnySimilarityAndOrder) {
+  const auto& ball = test::bumpy_ball();
+  const auto scheme = this->scheme();
+  const Chosen chosen = choose(*scheme, ball.surface());
+  const auto words = code_.fill_words(std::min(code_.capacity(), 256U));
+  const Embedding embedding =
+      scheme->embed(ball.surface(), chosen.units, random_placements(chosen, words.size()), words);
+  const auto good_words = [&](const Mesh& mesh) {
+    std::multiset<std::pair<std::uint32_t, std::uint32_t>> found;
+    const test::Solid solid(mesh);
+    for (const Reading& reading : scheme->read(solid.surface())) {
+      if (reading.worst_offset < 0.1) found.insert({reading.word.subscript, reading.word.part});
+    }
+    return found;
+  };
+  const Mesh marked{embedding.positions, ball.mesh.triangles};
+  const auto expected = good_words(marked);
+  EXPECT_GT(expected.size(), chosen.valid.size() * 9 / 10);
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    EXPECT_EQ(good_words(test::shuffled(marked, seed)), expected);
+    EXPECT_EQ(good_words(test::moved_rigidly_and_scaled(marked, seed)), expected);
+  }
+}
+
+TEST_P(EveryScheme, BoundariesAndTinyMeshesOfferNothing) {
+  for (Mesh mesh : {test::tetrahedron(), test::flat_grid(1, 1), Mesh{}}) {
+    const test::Solid solid(std::move(mesh));
+    EXPECT_EQ(scheme()->find_units(solid.surface()).size(), 0U);
+    EXPECT_TRUE(scheme()->read(solid.surface()).empty());
+  }
+}
+
+TEST_P(EveryScheme, DegenerateTrianglesAreNeitherUnitsNorTrouble) {
+  Mesh collapsed = test::flat_grid(6, 6);
+  for (std::size_t i = 0; i < collapsed.positions.size(); i += 2) {
+    collapsed.positions[i] = Vec3(1, 1, 0);
+  }
+  for (std::size_t i = 1; i < collapsed.positions.size(); i += 6) {
+    collapsed.positions[i][0] += 1e-300;
+  }
+  Mesh line = test::flat_grid(6, 6);
+  for (Vec3& p : line.positions) p = Vec3(p[0] + p[1], 0, 0);
+  for (const Mesh& mesh : {collapsed, line}) {
+    const test::Solid solid(mesh);
+    const UnitSet units = scheme()->find_units(solid.surface());
+    for (const Reading& reading : scheme()->read(solid.surface())) {
+      EXPECT_TRUE(std::isfinite(reading.weight));
+    }
+    std::vector<std::uint32_t> all(units.size());
+    std::iota(all.begin(), all.end(), 0U);
+    const auto words = code_.fill_words(4);
+    for (const float cost : scheme()->costs(solid.surface(), units, all, words).values) {
+      EXPECT_FALSE(std::isnan(cost));
+    }
+  }
+}
+
+TEST_P(EveryScheme, ResultsDoNotDependOnThreads) {
+  const auto& ball = test::bumpy_ball();
+  const auto words = code_.fill_words(std::min(code_.capacity(), 100U));
+  const auto scheme = this->scheme();
+  test::expect_same_for_any_threads([&] {
+    const Chosen chosen = choose(*scheme, ball.surface());
+    const auto costs = scheme->costs(ball.surface(), chosen.units, chosen.valid, words);
+    const auto embedding =
+        scheme->embed(ball.surface(), chosen.units, random_placements(chosen, words.size()), words);
+    return std::make_tuple(chosen.units.anchors, chosen.units.moved.points, costs.values,
+                           embedding.positions, embedding.failed);
+  });
+}
+
+TEST_P(EveryScheme, RefusesCellsWithoutWidth) {
+  SchemeOptions options;
+  for (const double step : {0.0, -1.0, 10.0, std::nan("")}) {
+    options.step = step;
+    EXPECT_THROW((void)make_scheme(std::string(GetParam()), code_, options), Error);
+  }
+}
+
+TEST(Schemes, HaveNames) {
+  EXPECT_THROW((void)scheme_defaults("xyz"), Error);
+  EXPECT_THROW((void)aie_groups("some"), Error);
+  EXPECT_EQ(aie_groups(std::string(name_of(AieGroups::All))), AieGroups::All);
+}
+
+}  // namespace
+}  // namespace triglyph
