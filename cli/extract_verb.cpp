@@ -1,3 +1,4 @@
+#include <cmath>
 #include <iostream>
 #include <memory>
 
@@ -34,7 +35,7 @@ void print_text(const std::filesystem::path& path, const Extraction& found) {
     return;
   }
   std::cout << shown(*found.message) << "  " << found.agreeing << " units agree, " << found.parts
-            << " parts, false alarm 2^-32\n";
+            << " parts, false alarm 2^" << std::ilogb(found.false_alarm) << "\n";
 }
 
 void print_json(const std::filesystem::path& path, const FileExtraction& file) {
@@ -49,7 +50,7 @@ void print_json(const std::filesystem::path& path, const FileExtraction& file) {
     json["parts"] = found.parts;
     json["units_agreeing"] = found.agreeing;
     json["agreement"] = found.agreement;
-    json["false_alarm_bound"] = kFalseAlarmBound;
+    json["false_alarm_bound"] = found.false_alarm;
   }
   std::cout << to_line(json);
 }

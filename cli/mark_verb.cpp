@@ -24,13 +24,13 @@ struct MarkArguments {
   std::optional<std::string> message;
   std::optional<std::string> message_hex;
   bool fill = false;
-  std::string layout{name_of(LayoutMethod::MinDegree)};
+  std::optional<std::string> layout;
   LayoutOptions layout_search;
   std::string conflicts{name_of(MarkOptions{}.conflict_rule)};
   std::string assign = "bottleneck";
   std::string cost = "displacement";
   std::uint32_t redundancy = MarkOptions{}.redundancy;
-  double max_move_percent = 100 * MarkOptions{}.max_move_rel_diag;
+  std::optional<double> max_move_percent;
   std::filesystem::path records;
   bool json = false;
   SchemeArguments scheme;
@@ -43,13 +43,13 @@ struct MarkArguments {
     const std::string text = message.value_or(kDefaultMessage);
     settings.message = message_hex ? from_hex(*message_hex) : Message(text.begin(), text.end());
     scheme.apply_to(settings);
-    settings.layout = layout_search;
-    settings.layout.method = layout_method(layout);
+    if (layout) settings.layout = layout_method(*layout);
+    settings.layout_search = layout_search;
     settings.conflict_rule = conflict_rule(conflicts);
     settings.assign = assign_method(assign);
     settings.cost = cost_function(cost);
     settings.redundancy = redundancy;
-    settings.max_move_rel_diag = max_move_percent / 100;
+    if (max_move_percent) settings.max_move_rel_diag = *max_move_percent / 100;
     // fails early on a message that cannot be, before any mesh is opened
     if (!fill) (void)WordCode(Key::trial(), settings.resolved().format).words_of(settings.message);
     return settings;
@@ -146,9 +146,8 @@ int run_mark(const MarkArguments& arguments) {
 }
 
 void add_layout_options(CLI::App& verb, MarkArguments& arguments) {
-  verb.add_option("--layout", arguments.layout, "first-fit is un-optimised")
-      ->check(CLI::IsMember(strings(layout_names())))
-      ->capture_default_str();
+  verb.add_option("--layout", arguments.layout, "first-fit is un-optimised [the scheme's]")
+      ->check(CLI::IsMember(strings(layout_names())));
   verb.add_option("--layout-iterations", arguments.layout_search.iterations,
                   "Passes over the candidates of a layout that searches")
       ->check(CLI::PositiveNumber)
@@ -192,9 +191,8 @@ void add_mark_verb(CLI::App& app, Action& action) {
       ->capture_default_str();
   verb->add_option("--max-move", arguments->max_move_percent,
                    "Farthest move of a point in percent of the diagonal that a repeat is worth; 0: "
-                   "any")
-      ->check(CLI::Range(0.0, 100.0))
-      ->capture_default_str();
+                   "any [the scheme's]")
+      ->check(CLI::Range(0.0, 100.0));
   verb->add_option("--records", arguments->records, "Write one JSON record a mesh to this file")
       ->type_name("FILE");
   verb->add_flag("--json", arguments->json, "Print the records instead of a table");

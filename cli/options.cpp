@@ -33,6 +33,14 @@ void SchemeArguments::add_to(CLI::App& verb) {
       ->check(CLI::Range(2, 32));
   verb.add_option("--step", step_, "Width of a quantiser cell, dimensionless [the scheme's]")
       ->check(CLI::PositiveNumber);
+  verb.add_option("--radius-edges", radius_edges_,
+                  "Radius of the balls of iie in mean edge lengths [the scheme's]")
+      ->check(CLI::Range(2.0, 100.0));
+  verb.add_option("--radius", radius_, "The same in model units; then scaling is not survived")
+      ->check(CLI::PositiveNumber);
+  verb.add_option("--site-rings", site_rings_,
+                  "Rings within which one point may be a centre of iie; 0: all [the scheme's]")
+      ->check(CLI::Range(0, 8));
   verb.add_option("--aie-groups", groups_, "Neighbours that carry a group's bits in aie")
       ->check(CLI::IsMember({"one", "all"}))
       ->capture_default_str();
@@ -45,6 +53,9 @@ void SchemeArguments::apply_to(JobSettings& settings) const {
   settings.part_bits = part_bits_;
   settings.step = step_;
   settings.groups = aie_groups(groups_);
+  settings.radius_edges = radius_edges_;
+  settings.radius = radius_;
+  settings.site_rings = site_rings_;
 }
 
 void MachineArguments::add_threads_to(CLI::App& verb) {

@@ -39,6 +39,9 @@ class SchemeArguments {
   std::optional<int> subscript_bits_;
   std::optional<int> part_bits_;
   std::optional<double> step_;
+  std::optional<double> radius_edges_;
+  std::optional<double> radius_;
+  std::optional<int> site_rings_;
   std::string groups_{name_of(AieGroups::One)};
 };
 

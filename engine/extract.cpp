@@ -2,14 +2,19 @@
 
 #include <algorithm>
 
+#include "engine/message/decode.h"
+
 namespace triglyph {
 
-Extraction extract(const Surface& surface, const Scheme& scheme, const WordCode& code) {
+Extraction extract(const Surface& surface, const Scheme& scheme, const WordCode& code,
+                   int doubtful_parts) {
   Extraction result;
   result.readings = scheme.read(surface);
   Votes votes(code);
   for (const Reading& reading : result.readings) votes.add(reading);
-  result.message = code.message_of(votes.parts());
+  Decoded decoded = decode(votes, code, doubtful_parts);
+  result.message = std::move(decoded.message);
+  result.false_alarm = decoded.false_alarm;
   if (!result.message) return result;
 
   const std::vector<Word> words = code.words_of(*result.message);

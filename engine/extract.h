@@ -17,15 +17,12 @@ struct Extraction {
   std::uint32_t parts = 0;         // parts of the message; 0 without one
   std::uint32_t agreeing = 0;      // units whose word is exactly the message's
   double agreement = 0;            // of the least agreed part's votes, 0 to 1
+  double false_alarm = 0;          // chance that an unmarked mesh yields a message
   std::vector<Reading> readings;   // all units that show the marker, genuine or by chance
 };
 
-// Chance that a mesh which was never marked under the key yields a message: one hypothesis a mesh,
-// against a 32-bit tag.
-inline constexpr double kFalseAlarmBound = 0x1.0p-32;
-
 // O(triangles).
-[[nodiscard]] Extraction extract(const Surface& surface, const Scheme& scheme,
-                                 const WordCode& code);
+[[nodiscard]] Extraction extract(const Surface& surface, const Scheme& scheme, const WordCode& code,
+                                 int doubtful_parts = 0);
 
 }  // namespace triglyph

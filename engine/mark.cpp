@@ -6,7 +6,7 @@
 
 #include "engine/assign_words.h"
 #include "engine/base/error.h"
-#include "engine/base/parallel.h"
+#include "engine/mesh/edge_length.h"
 #include "engine/metric/hausdorff.h"
 #include "engine/settle.h"
 
@@ -51,21 +51,6 @@ std::uint32_t count_parts(const Marking& marking) {
   return static_cast<std::uint32_t>(std::count(carried.begin(), carried.end(), 1));
 }
 
-double mean_edge(const Mesh& mesh) {
-  const double total = parallel_reduce(
-      mesh.triangles.size(), 0.0,
-      [&](std::size_t t) {
-        const Triangle& triangle = mesh.triangles[t];
-        double sum = 0;
-        for (std::size_t i = 0; i < 3; ++i) {
-          sum += (mesh.positions[triangle[(i + 1) % 3]] - mesh.positions[triangle[i]]).norm();
-        }
-        return sum;
-      },
-      [](double a, double b) { return a + b; });
-  return mesh.triangles.empty() ? 0 : total / (3.0 * static_cast<double>(mesh.triangles.size()));
-}
-
 }  // namespace
 
 std::string_view name_of(AssignMethod method) {
@@ -93,7 +78,11 @@ MarkOptions default_mark_options(const std::string& scheme, bool fill) {
   MarkOptions options;
   options.scheme = scheme;
   options.format = fill ? defaults.fill_format : defaults.format;
-  options.scheme_options.step = fill ? defaults.fill_step : defaults.step;
+  options.scheme_options = fill ? defaults.fill_options : defaults.options;
+  if (defaults.has_few_units && !fill) {
+    options.layout.method = LayoutMethod::LocalSearch;
+    options.max_move_rel_diag = 0;
+  }
   return options;
 }
 
@@ -149,7 +138,7 @@ Marking mark(const Surface& surface, std::span<const std::uint8_t> message, cons
   marking.parts_carried = count_parts(marking);
   if (!fill && marking.parts_carried < marking.words.size()) marking.status = MarkStatus::TooSmall;
   const bool mostly_lost = 2 * marking.units_dropped > marking.units_assigned;
-  const double cell = options.scheme_options.step * mean_edge(surface.mesh);
+  const double cell = options.scheme_options.step * mean_edge_length(surface.mesh);
   if (mostly_lost && number_step > 0.05 * cell) marking.status = MarkStatus::TooCoarse;
   return marking;
 }

@@ -10,11 +10,16 @@ MarkOptions JobSettings::resolved() const {
   options.scheme_options.step = step.value_or(options.scheme_options.step);
   options.scheme_options.cost = cost;
   options.scheme_options.groups = groups;
+  options.scheme_options.radius_edges = radius_edges.value_or(options.scheme_options.radius_edges);
+  options.scheme_options.radius = radius.value_or(options.scheme_options.radius);
+  options.scheme_options.site_rings = site_rings.value_or(options.scheme_options.site_rings);
   options.conflict_rule = conflict_rule;
-  options.layout = layout;
+  const LayoutMethod method = layout.value_or(options.layout.method);
+  options.layout = layout_search;
+  options.layout.method = method;
   options.assign = assign;
   options.redundancy = redundancy;
-  options.max_move_rel_diag = max_move_rel_diag;
+  options.max_move_rel_diag = max_move_rel_diag.value_or(options.max_move_rel_diag);
   return options;
 }
 

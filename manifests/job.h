@@ -20,12 +20,16 @@ struct JobSettings {
   std::optional<int> part_bits;
   std::optional<double> step;
   AieGroups groups = AieGroups::One;
+  std::optional<double> radius_edges;
+  std::optional<double> radius;
+  std::optional<int> site_rings;
   ConflictRule conflict_rule = MarkOptions{}.conflict_rule;
   CostFunction cost = CostFunction::Displacement;
-  LayoutOptions layout;
+  std::optional<LayoutMethod> layout;
+  LayoutOptions layout_search;  // how long, should the layout search
   AssignMethod assign = MarkOptions{}.assign;
   std::uint32_t redundancy = MarkOptions{}.redundancy;
-  double max_move_rel_diag = MarkOptions{}.max_move_rel_diag;
+  std::optional<double> max_move_rel_diag;
 
   // Throws Error Usage for an unknown scheme.
   [[nodiscard]] MarkOptions resolved() const;

@@ -46,17 +46,23 @@ bool apply(const std::string& key, const Json& value, JobSettings& settings) {
   } else if (key == "scheme") {
     settings.scheme = value.get<std::string>();
   } else if (key == "layout") {
-    settings.layout.method = layout_method(value.get<std::string>());
+    settings.layout = layout_method(value.get<std::string>());
   } else if (key == "layout_iterations") {
-    settings.layout.iterations = value.get<std::uint32_t>();
+    settings.layout_search.iterations = value.get<std::uint32_t>();
   } else if (key == "layout_seconds") {
-    settings.layout.seconds = value.get<double>();
+    settings.layout_search.seconds = value.get<double>();
   } else if (key == "layout_seed") {
-    settings.layout.seed = value.get<std::uint64_t>();
+    settings.layout_search.seed = value.get<std::uint64_t>();
   } else if (key == "assign") {
     settings.assign = assign_method(value.get<std::string>());
   } else if (key == "aie_groups") {
     settings.groups = aie_groups(value.get<std::string>());
+  } else if (key == "radius_edges") {
+    settings.radius_edges = value.get<double>();
+  } else if (key == "radius") {
+    settings.radius = value.get<double>();
+  } else if (key == "site_rings") {
+    settings.site_rings = value.get<int>();
   } else if (key == "conflicts") {
     settings.conflict_rule = conflict_rule(value.get<std::string>());
   } else if (key == "cost") {

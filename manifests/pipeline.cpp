@@ -116,6 +116,9 @@ void mark(Task& task, const Key& key) noexcept {
     Record& record = task.record;
     const JobSettings& settings = record.job.settings;
     record.key_fingerprint = key.fingerprint();
+    if (settings.fill) {
+      record.options.scheme_options = fixed_for(task.file->mesh(), record.options.scheme_options);
+    }
     task.marking = mark(
         {task.file->mesh(), *task.halfedges}, settings.fill ? Message{} : settings.message, key,
         record.options, [&](const Vec3& point) { return task.file->round(point); },
@@ -153,7 +156,8 @@ void read_back(Task& task, const Key& key) noexcept {
     const WordCode code(key, record.format);
     const auto scheme = make_scheme(record.options.scheme, code, record.options.scheme_options);
     const Readable written(task.output->temporary_path());
-    const Extraction found = extract(written.surface(), *scheme, code);
+    const Extraction found =
+        extract(written.surface(), *scheme, code, record.options.scheme_options.doubtful_parts);
     record.units_embedded = count_carriers(task.marking, found.readings);
     const bool verified = settings.fill
                               ? record.units_embedded > 0 &&
@@ -196,8 +200,8 @@ FileExtraction extract_file(const std::filesystem::path& path, const Key& key,
   const Readable readable(path);
   const WordCode code(key, options.format);
   const auto scheme = make_scheme(options.scheme, code, options.scheme_options);
-  return {extract(readable.surface(), *scheme, code), readable.file.vertex_count(),
-          readable.file.face_count()};
+  return {extract(readable.surface(), *scheme, code, options.scheme_options.doubtful_parts),
+          readable.file.vertex_count(), readable.file.face_count()};
 }
 
 std::string_view name_of(FileVerdict verdict) {
@@ -230,7 +234,8 @@ Verification verify_file(const RecordedMark& recorded, const Key& key) {
     const Readable readable(recorded.out);
     const WordCode code(key, recorded.options.format);
     const auto scheme = make_scheme(recorded.options.scheme, code, recorded.options.scheme_options);
-    const Extraction found = extract(readable.surface(), *scheme, code);
+    const Extraction found =
+        extract(readable.surface(), *scheme, code, recorded.options.scheme_options.doubtful_parts);
     const std::vector<Word> words =
         recorded.fill ? code.fill_words(recorded.parts) : code.words_of(recorded.message);
     Verification result;

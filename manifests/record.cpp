@@ -34,20 +34,42 @@ Status status_named(const std::string& name) {
 
 Json options_of(const Record& record) {
   const MarkOptions& options = record.options;
-  return {{"layout", name_of(options.layout.method)},
-          {"layout_iterations", options.layout.iterations},
-          {"layout_seconds", options.layout.seconds},
-          {"layout_seed", options.layout.seed},
-          {"conflicts", name_of(options.conflict_rule)},
-          {"assign", name_of(options.assign)},
-          {"cost", name_of(options.scheme_options.cost)},
-          {"redundancy", options.redundancy},
-          {"max_move_rel_diag", options.max_move_rel_diag},
-          {"marker_bits", record.format.marker_bits},
-          {"subscript_bits", record.format.subscript_bits},
-          {"part_bits", record.format.part_bits},
-          {"step", options.scheme_options.step},
-          {"aie_groups", name_of(options.scheme_options.groups)}};
+  const SchemeOptions& scheme = options.scheme_options;
+  Json json = {{"layout", name_of(options.layout.method)},
+               {"layout_iterations", options.layout.iterations},
+               {"layout_seconds", options.layout.seconds},
+               {"layout_seed", options.layout.seed},
+               {"conflicts", name_of(options.conflict_rule)},
+               {"assign", name_of(options.assign)},
+               {"cost", name_of(scheme.cost)},
+               {"redundancy", options.redundancy},
+               {"max_move_rel_diag", options.max_move_rel_diag},
+               {"marker_bits", record.format.marker_bits},
+               {"subscript_bits", record.format.subscript_bits},
+               {"part_bits", record.format.part_bits},
+               {"step", scheme.step}};
+  if (options.scheme == "aie") json["aie_groups"] = name_of(scheme.groups);
+  if (options.scheme == "iie") {
+    json["radius_edges"] = scheme.radius_edges;
+    json["radius"] = scheme.radius;
+    json["centre_rings"] = scheme.centre_rings;
+    json["site_rings"] = scheme.site_rings;
+    json["doubtful_parts"] = scheme.doubtful_parts;
+  }
+  return json;
+}
+
+// What extraction must know of them.
+SchemeOptions scheme_options_of(const nlohmann::json& options) {
+  SchemeOptions scheme;
+  scheme.step = options.at("step").get<double>();
+  scheme.groups = aie_groups(options.value("aie_groups", std::string(name_of(scheme.groups))));
+  scheme.radius_edges = options.value("radius_edges", scheme.radius_edges);
+  scheme.radius = options.value("radius", scheme.radius);
+  scheme.doubtful_parts = options.value("doubtful_parts", scheme.doubtful_parts);
+  scheme.centre_rings = options.value("centre_rings", scheme.centre_rings);
+  scheme.site_rings = options.value("site_rings", scheme.site_rings);
+  return scheme;
 }
 
 }  // namespace
@@ -121,8 +143,7 @@ RecordedMark parse_record(const std::string& line) try {
   if (!mark.fill) mark.message = from_hex(json.at("message_hex"));
   const auto& options = json.at("options");
   mark.options.scheme = json.at("scheme").get<std::string>();
-  mark.options.scheme_options.step = options.at("step").get<double>();
-  mark.options.scheme_options.groups = aie_groups(options.at("aie_groups").get<std::string>());
+  mark.options.scheme_options = scheme_options_of(options);
   mark.options.format = {options.at("marker_bits").get<int>(),
                          options.at("subscript_bits").get<int>(),
                          options.at("part_bits").get<int>()};

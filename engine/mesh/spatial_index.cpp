@@ -72,6 +72,43 @@ struct SpatialIndex::Scene {
     return true;
   }
 
+  struct BallQuery {
+    const Scene* scene;
+    Vec3 centre;
+    double squared_radius;
+    std::size_t most;
+    std::vector<std::uint32_t> found;
+  };
+
+  static bool collect(RTCPointQueryFunctionArguments* arguments) {
+    auto& query = *static_cast<BallQuery*>(arguments->userPtr);
+    const Scene& scene = *query.scene;
+    const Triangle& triangle = scene.triangles[arguments->primID];
+    const Vec3 point =
+        closest_on_triangle(query.centre, scene.positions[triangle[0]],
+                            scene.positions[triangle[1]], scene.positions[triangle[2]]);
+    if ((point - query.centre).sqrnorm() <= query.squared_radius) {
+      query.found.push_back(arguments->primID);
+    }
+    if (query.found.size() <= query.most) return false;
+    arguments->query->radius = 0;  // enough: look no further
+    return true;
+  }
+
+  // The query in Embree's units; what rounding could lose is added to the radius.
+  [[nodiscard]] RTCPointQuery point_query(const Vec3& point, double reach) const {
+    const Vec3 local = (point - centre) * scale;
+    RTCPointQuery query{};
+    query.x = static_cast<float>(local[0]);
+    query.y = static_cast<float>(local[1]);
+    query.z = static_cast<float>(local[2]);
+    // the query's own rounding grows with its distance from the box
+    const double pad = kFloatPad * std::max(1.0, local.max_abs());
+    query.radius = std::isfinite(reach) ? float_above(reach * scale * (1 + 1e-6) + pad)
+                                        : std::numeric_limits<float>::infinity();
+    return query;
+  }
+
   void attach_triangles() {
     RTCGeometry geometry = rtcNewGeometry(shared_device(), RTC_GEOMETRY_TYPE_TRIANGLE);
     // each triangle with corners of its own: a few triangles of a large mesh stay a few
@@ -125,21 +162,27 @@ ClosestPoint SpatialIndex::closest(const Vec3& query, double reach) const {
   Scene::Query state{scene_.get(), query, {}, std::numeric_limits<double>::infinity()};
   state.best.distance = std::numeric_limits<double>::infinity();
   if (scene_->handle == nullptr) return state.best;
-  const Vec3 local = (query - scene_->centre) * scene_->scale;
-  RTCPointQuery point_query{};
-  point_query.x = static_cast<float>(local[0]);
-  point_query.y = static_cast<float>(local[1]);
-  point_query.z = static_cast<float>(local[2]);
-  // the query's own rounding grows with its distance from the box
-  const double pad = kFloatPad * std::max(1.0, local.max_abs());
-  point_query.radius = std::isfinite(reach) ? float_above(reach * scene_->scale * (1 + 1e-6) + pad)
-                                            : std::numeric_limits<float>::infinity();
+  RTCPointQuery point_query = scene_->point_query(query, reach);
   RTCPointQueryContext context;
   rtcInitPointQueryContext(&context);
   rtcPointQuery(scene_->handle, &point_query, &context, &Scene::visit, &state);
   state.best.distance = std::sqrt(state.best_squared);
   if (state.best.distance <= reach) return state.best;
   return {std::numeric_limits<double>::infinity(), kNoTriangle, Vec3(0, 0, 0)};
+}
+
+std::optional<std::vector<std::uint32_t>> SpatialIndex::triangles_in_ball(const Vec3& centre,
+                                                                          double radius,
+                                                                          std::size_t most) const {
+  Scene::BallQuery state{scene_.get(), centre, radius * radius, most, {}};
+  if (scene_->handle == nullptr) return std::move(state.found);
+  RTCPointQuery point_query = scene_->point_query(centre, radius);
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  rtcPointQuery(scene_->handle, &point_query, &context, &Scene::collect, &state);
+  if (state.found.size() > most) return std::nullopt;
+  std::sort(state.found.begin(), state.found.end());
+  return std::move(state.found);
 }
 
 Vec3 closest_on_triangle(const Vec3& query, const Vec3& a, const Vec3& b, const Vec3& c) {

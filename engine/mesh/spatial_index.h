@@ -6,7 +6,9 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
+#include <vector>
 
 #include "engine/mesh/mesh.h"
 
@@ -30,6 +32,12 @@ class SpatialIndex {
   // The nearest point on any triangle within `reach` of `query` (inclusive; infinity: anywhere).
   // Safe to call from many threads. O(log t) typically.
   [[nodiscard]] ClosestPoint closest(const Vec3& query, double reach) const;
+
+  // All triangles that come as near as `radius` (inclusive, finite) to `centre`, ascending; nothing
+  // if there are more than `most`. Safe to call from many threads. O(log t + triangles found).
+  [[nodiscard]] std::optional<std::vector<std::uint32_t>> triangles_in_ball(const Vec3& centre,
+                                                                            double radius,
+                                                                            std::size_t most) const;
 
  private:
   struct Scene;

@@ -54,8 +54,8 @@ bool bit_at(std::span<const std::uint8_t> bytes, std::size_t bit) {
 
 void validate(const WordFormat& format) {
   const auto out_of = [](int bits, int least, int most) { return bits < least || bits > most; };
-  if (out_of(format.marker_bits, 1, 16) || out_of(format.subscript_bits, 1, 16)) {
-    throw Error(ErrorCode::Usage, {}, "", "marker and subscript take 1 to 16 bits each");
+  if (out_of(format.marker_bits, 0, 16) || out_of(format.subscript_bits, 1, 16)) {
+    throw Error(ErrorCode::Usage, {}, "", "a marker takes 0 to 16 bits, a subscript 1 to 16");
   }
   if (out_of(format.part_bits, 2, 32)) {
     throw Error(ErrorCode::Usage, {}, "", "a part takes 2 to 32 bits");
@@ -123,30 +123,39 @@ std::vector<Word> WordCode::fill_words(std::uint32_t parts) const {
   return words;
 }
 
+std::optional<std::uint8_t> WordCode::byte_of(std::span<const std::optional<std::uint32_t>> parts,
+                                              std::size_t byte) const {
+  const auto part_bits = static_cast<std::size_t>(format_.part_bits);
+  unsigned value = 0;
+  for (std::size_t i = 0; i < 8; ++i) {
+    const std::size_t bit = 8 * byte + i;
+    const auto index = static_cast<std::uint32_t>(bit / part_bits);
+    if (index >= parts.size() || !parts[index]) return std::nullopt;
+    value |= ((whiten(*parts[index], index) >> (bit % part_bits)) & 1U) << i;
+  }
+  return static_cast<std::uint8_t>(value);
+}
+
+std::optional<std::uint32_t> WordCode::parts_wanted(
+    std::span<const std::optional<std::uint32_t>> parts) const {
+  const auto length = byte_of(parts, 0);
+  if (!length) return std::nullopt;
+  return parts_for(*length + std::size_t{1});
+}
+
 std::optional<Message> WordCode::message_of(
     std::span<const std::optional<std::uint32_t>> parts) const {
-  const auto part_bits = static_cast<std::size_t>(format_.part_bits);
-  const auto read_byte = [&](std::size_t byte) -> std::optional<std::uint8_t> {
-    unsigned value = 0;
-    for (std::size_t i = 0; i < 8; ++i) {
-      const std::size_t bit = 8 * byte + i;
-      const auto index = static_cast<std::uint32_t>(bit / part_bits);
-      if (index >= parts.size() || !parts[index]) return std::nullopt;
-      value |= ((whiten(*parts[index], index) >> (bit % part_bits)) & 1U) << i;
-    }
-    return static_cast<std::uint8_t>(value);
-  };
-  const auto length = read_byte(0);
+  const auto length = byte_of(parts, 0);
   if (!length) return std::nullopt;
   Message message;
   for (std::size_t i = 0; i < *length + std::size_t{1}; ++i) {
-    const auto byte = read_byte(1 + i);
+    const auto byte = byte_of(parts, 1 + i);
     if (!byte) return std::nullopt;
     message.push_back(*byte);
   }
   std::uint32_t tag = 0;
   for (std::size_t i = 0; i < 4; ++i) {
-    const auto byte = read_byte(1 + message.size() + i);
+    const auto byte = byte_of(parts, 1 + message.size() + i);
     if (!byte) return std::nullopt;
     tag |= std::uint32_t{*byte} << (8 * i);
   }

@@ -28,7 +28,7 @@ struct WordFormat {
   bool operator==(const WordFormat&) const = default;
 };
 
-// Throws Error Usage if a count is out of its range: 1 <= m, s <= 16 and 2 <= w <= 32.
+// Throws Error Usage if a count is out of its range: 0 <= m <= 16, 1 <= s <= 16 and 2 <= w <= 32.
 void validate(const WordFormat& format);
 
 // One watermark word as its bits stand in the mesh; the marker is the same for all.
@@ -67,12 +67,19 @@ class WordCode {
     return inverse_[subscript];
   }
 
+  // Number of parts of the message whose first parts these are, by its length byte; nothing if a
+  // part of that is.
+  [[nodiscard]] std::optional<std::uint32_t> parts_wanted(
+      std::span<const std::optional<std::uint32_t>> parts) const;
+
   // The message in the parts, or nothing if the length byte asks for more parts than are known or
   // the tag does not fit. A part is nothing if no unit voted for it.
   [[nodiscard]] std::optional<Message> message_of(
       std::span<const std::optional<std::uint32_t>> parts) const;
 
  private:
+  [[nodiscard]] std::optional<std::uint8_t> byte_of(
+      std::span<const std::optional<std::uint32_t>> parts, std::size_t byte) const;
   [[nodiscard]] std::uint32_t whiten(std::uint32_t part, std::uint32_t index) const;
 
   Key key_;

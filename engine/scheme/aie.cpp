@@ -225,63 +225,81 @@ Embedding AieScheme::embed(const Surface& surface, const UnitSet& units,
 
 // A group's points carry the same bits; where they disagree, those nearest to their cells' centres
 // win. Its distance counts every point that disagrees as one on the border.
-bool AieScheme::read_group(const Mesh& mesh, const AffineNorm& norm,
-                           const EdgeNeighbourhood& around, std::size_t group,
-                           Quantiser::Cell& cell) const {
+std::optional<AieScheme::GroupReading> AieScheme::read_group(const Mesh& mesh,
+                                                             const AffineNorm& norm,
+                                                             const EdgeNeighbourhood& around,
+                                                             std::size_t group) const {
   const Quantiser& quantiser = channels_[group].quantiser(norm);
   std::array<Quantiser::Cell, EdgeNeighbourhood::kMaxPoints> cells;
   const auto points = around.group(group);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec3& position = mesh.positions[points[i]];
-    if (norm.is_plane() && norm.height(position) > kMaxHeight) return false;
+    if (norm.is_plane() && norm.height(position) > kMaxHeight) return std::nullopt;
     cells[i] = quantiser.cell_of(std::log(norm(position)));
   }
+  GroupReading result;
   float best = -1;
   for (std::size_t i = 0; i < points.size(); ++i) {
     float support = 0;
+    std::size_t supporters = 0;
     for (std::size_t j = 0; j < points.size(); ++j) {
-      if (cells[j].bits == cells[i].bits) support += 1 - cells[j].distance;
+      if (cells[j].bits != cells[i].bits) continue;
+      support += 1 - cells[j].distance;
+      ++supporters;
     }
     if (support <= best) continue;
     best = support;
-    cell.bits = cells[i].bits;
+    result.bits = cells[i].bits;
+    result.unanimous = supporters == points.size();
   }
-  cell.distance = 1 - best / static_cast<float>(points.size());
-  return true;
+  result.distance = 1 - best / static_cast<float>(points.size());
+  return result;
 }
 
-std::optional<Reading> AieScheme::read_unit(const Surface& surface, const AffineNorm& norm,
-                                            std::uint32_t anchor, bool reversed) const {
+std::optional<AieScheme::UnitReading> AieScheme::read_one_way(const Surface& surface,
+                                                              const AffineNorm& norm,
+                                                              std::uint32_t anchor,
+                                                              bool reversed) const {
   const auto around = neighbourhood_of(surface, anchor / kAlternatives, reversed, rule_of(anchor));
   if (!around) return std::nullopt;
-  const auto bit_of_word = [&](const std::array<Quantiser::Cell, 4>& cells, int i) {
-    return cells[static_cast<std::size_t>(i % 4)].bits >> (i / 4) & 1;
+  std::array<GroupReading, 4> groups;
+  const auto bit_of_word = [&](int i) {
+    return groups[static_cast<std::size_t>(i % 4)].bits >> (i / 4) & 1;
   };
-  Reading reading;
+  UnitReading unit;
+  Reading& reading = unit.reading;
   reading.anchor = anchor;
   reading.weight = 1;
-  std::array<Quantiser::Cell, 4> cells;
   for (int k = 0; k < 4; ++k) {
-    Quantiser::Cell& cell = cells[static_cast<std::size_t>(k)];
-    if (!read_group(surface.mesh, norm, *around, static_cast<std::size_t>(k), cell)) {
-      return std::nullopt;
-    }
+    const auto found = read_group(surface.mesh, norm, *around, static_cast<std::size_t>(k));
+    if (!found) return std::nullopt;
+    groups[static_cast<std::size_t>(k)] = *found;
     for (int i = k; i < format_.marker_bits; i += 4) {
-      if (bit_of_word(cells, i) != (marker_ >> i & 1)) return std::nullopt;  // most edges end here
+      if (bit_of_word(i) != (marker_ >> i & 1)) return std::nullopt;  // most edges end here
     }
-    reading.weight *= 1 - cell.distance;
-    reading.worst_offset = std::max(reading.worst_offset, cell.distance);
+    reading.weight *= 1 - found->distance;
+    reading.worst_offset = std::max(reading.worst_offset, found->distance);
+    unit.unanimous = unit.unanimous && found->unanimous;
   }
   for (int i = 0; i < format_.subscript_bits; ++i) {
-    reading.word.subscript |= bit_of_word(cells, format_.marker_bits + i) << i;
+    reading.word.subscript |= bit_of_word(format_.marker_bits + i) << i;
   }
   for (int i = 0; i < format_.part_bits; ++i) {
     const int at = format_.marker_bits + format_.subscript_bits + i;
-    reading.word.part |= bit_of_word(cells, at) << i;
+    reading.word.part |= bit_of_word(at) << i;
     reading.bit_weights[static_cast<std::size_t>(i)] =
-        1 - cells[static_cast<std::size_t>(at % 4)].distance;
+        1 - groups[static_cast<std::size_t>(at % 4)].distance;
   }
-  return reading;
+  return unit;
+}
+
+std::optional<AieScheme::UnitReading> AieScheme::read_unit(const Surface& surface,
+                                                           const AffineNorm& norm,
+                                                           std::uint32_t anchor) const {
+  const std::optional<UnitReading> forward = read_one_way(surface, norm, anchor, false);
+  const std::optional<UnitReading> backward = read_one_way(surface, norm, anchor, true);
+  const bool turned = backward && (!forward || backward->reading.weight > forward->reading.weight);
+  return turned ? backward : forward;
 }
 
 std::vector<Reading> AieScheme::read(const Surface& surface) const {
@@ -291,13 +309,17 @@ std::vector<Reading> AieScheme::read(const Surface& surface) const {
     if (!basis) return;
     const AffineNorm norm(corners_of(surface.mesh, *basis), kPlaneBelow);
     if (!(norm.straightness() > 0)) return;
-    for (std::uint32_t alternative = 0; alternative < kAlternatives; ++alternative) {
-      const std::uint32_t anchor = kAlternatives * edge + alternative;
-      std::optional<Reading> best = read_unit(surface, norm, anchor, false);
-      const std::optional<Reading> other = read_unit(surface, norm, anchor, true);
-      if (other && (!best || other->weight > best->weight)) best = other;
-      if (best) out.push_back(*best);
+    auto first = read_unit(surface, norm, kAlternatives * edge);
+    auto second = read_unit(surface, norm, kAlternatives * edge + 1);
+    const bool nested = options_.groups == AieGroups::All;
+    if (nested && first && second && first->reading.word == second->reading.word) {
+      // one unit. Its points are those of the larger grouping if all of these agree: in a unit of
+      // the smaller one the others are strangers, and agree with chance 2^-(bits of the word).
+      const bool larger = second->unanimous || second->reading.weight > first->reading.weight;
+      (larger ? first : second).reset();
     }
+    if (first) out.push_back(first->reading);
+    if (second) out.push_back(second->reading);
   };
   return parallel_collect<Reading>(surface.halfedges.kernel.n_edges(), read_edge);
 }

@@ -37,7 +37,9 @@ class AieScheme final : public Scheme {
   // Throws Error Usage if m + s + w > 32 or the step is out of range.
   AieScheme(const WordCode& code, const SchemeOptions& options);
 
-  [[nodiscard]] static SchemeDefaults defaults() { return {{6, 8, 10}, 0.02, {6, 13, 5}, 0.004}; }
+  [[nodiscard]] static SchemeDefaults defaults() {
+    return {{6, 8, 10}, {.step = 0.02}, {6, 13, 5}, {.step = 0.004}};
+  }
 
   // An anchor is kAlternatives * edge + alternative: one way of grouping. O(edges), parallel.
   [[nodiscard]] UnitSet find_units(const Surface& surface) const override;
@@ -51,7 +53,8 @@ class AieScheme final : public Scheme {
                                 std::span<const Placement> placements,
                                 std::span<const Word> words) const override;
 
-  // Tries every edge both ways and with all groupings.
+  // Tries every edge both ways and with all groupings. A unit whose points are among those of
+  // another grouping of its edge is read once, not twice.
   [[nodiscard]] std::vector<Reading> read(const Surface& surface) const override;
 
   static constexpr std::uint32_t kAlternatives = 2;
@@ -72,6 +75,17 @@ class AieScheme final : public Scheme {
   using GroupBits = std::array<std::uint32_t, 4>;  // what each group carries of a word
   struct Site;                                     // a unit's basis and groups, ready to be moved
 
+  // What a group's points say together.
+  struct GroupReading {
+    std::uint32_t bits = 0;
+    float distance = 1;  // from the cells' centres, in half cells
+    bool unanimous = false;
+  };
+  struct UnitReading {
+    Reading reading;
+    bool unanimous = true;  // in every group
+  };
+
   [[nodiscard]] static Channel make_channel(const WordCode& code, double step, std::size_t group);
   [[nodiscard]] GroupRule rule_of(std::uint32_t anchor) const;
   [[nodiscard]] GroupBits deal_out(const Word& word) const;
@@ -81,11 +95,14 @@ class AieScheme final : public Scheme {
   [[nodiscard]] float group_cost(const Surface& surface, const Site& site, std::size_t group,
                                  std::uint32_t bits) const;
   [[nodiscard]] float combine(const std::array<float, 4>& group_costs, std::size_t moved) const;
-  [[nodiscard]] bool read_group(const Mesh& mesh, const AffineNorm& norm,
-                                const EdgeNeighbourhood& around, std::size_t group,
-                                Quantiser::Cell& cell) const;
-  [[nodiscard]] std::optional<Reading> read_unit(const Surface& surface, const AffineNorm& norm,
-                                                 std::uint32_t anchor, bool reversed) const;
+  [[nodiscard]] std::optional<GroupReading> read_group(const Mesh& mesh, const AffineNorm& norm,
+                                                       const EdgeNeighbourhood& around,
+                                                       std::size_t group) const;
+  [[nodiscard]] std::optional<UnitReading> read_one_way(const Surface& surface,
+                                                        const AffineNorm& norm,
+                                                        std::uint32_t anchor, bool reversed) const;
+  [[nodiscard]] std::optional<UnitReading> read_unit(const Surface& surface, const AffineNorm& norm,
+                                                     std::uint32_t anchor) const;
 
   SchemeOptions options_;
   WordFormat format_;

@@ -14,7 +14,10 @@ struct Ring {
   std::size_t size = 0;
 
   [[nodiscard]] bool contains(std::uint32_t point) const {
-    return std::find(points.begin(), points.begin() + size, point) != points.begin() + size;
+    for (std::size_t i = 0; i < size; ++i) {
+      if (points[i] == point) return true;
+    }
+    return false;
   }
 };
 
@@ -59,8 +62,8 @@ std::optional<std::uint32_t> apex_behind(const Surface& surface, Halfedge side) 
 
 bool all_different(std::span<const std::uint32_t> points) {
   for (std::size_t i = 1; i < points.size(); ++i) {
-    if (std::find(points.begin(), points.begin() + i, points[i]) != points.begin() + i) {
-      return false;
+    for (std::size_t j = 0; j < i; ++j) {
+      if (points[i] == points[j]) return false;
     }
   }
   return true;

@@ -4,7 +4,9 @@
 #include <array>
 
 #include "engine/base/error.h"
+#include "engine/mesh/edge_length.h"
 #include "engine/scheme/aie.h"
+#include "engine/scheme/iie.h"
 #include "engine/scheme/tsq.h"
 
 namespace triglyph {
@@ -20,9 +22,11 @@ std::unique_ptr<Scheme> make(const WordCode& code, const SchemeOptions& options)
   return std::make_unique<Kind>(code, options);
 }
 
-constexpr std::array<std::string_view, 2> kNames = {"tsq", "aie"};
+constexpr std::array<std::string_view, 3> kNames = {"tsq", "aie", "iie"};
 constexpr std::array<KnownScheme, kNames.size()> kSchemes = {
-    {{TsqScheme::defaults, make<TsqScheme>}, {AieScheme::defaults, make<AieScheme>}}};
+    {{TsqScheme::defaults, make<TsqScheme>},
+     {AieScheme::defaults, make<AieScheme>},
+     {IieScheme::defaults, make<IieScheme>}}};
 
 const KnownScheme& scheme_named(const std::string& name) {
   const auto at = std::find(kNames.begin(), kNames.end(), name);
@@ -60,6 +64,11 @@ std::span<const std::string_view> scheme_names() {
 
 SchemeDefaults scheme_defaults(const std::string& name) {
   return scheme_named(name).defaults();
+}
+
+SchemeOptions fixed_for(const Mesh& mesh, SchemeOptions options) {
+  if (!(options.radius > 0)) options.radius = options.radius_edges * mean_edge_length(mesh);
+  return options;
 }
 
 std::unique_ptr<Scheme> make_scheme(const std::string& name, const WordCode& code,

@@ -76,6 +76,17 @@ struct SchemeOptions {
   double step = 0.02;  // width of a quantiser cell, dimensionless
   CostFunction cost = CostFunction::Displacement;
   AieGroups groups = AieGroups::One;
+  // Parts whose second best value extraction tries if the best ones make no message; each doubles
+  // the chance of a false alarm.
+  int doubtful_parts = 0;
+  // iie: radius of the balls in mean edge lengths of the mesh; or, if > 0, in model units.
+  double radius_edges = 3.5;
+  double radius = 0;
+  // iie: a ball's centre is the mean of the points within so many rings of its anchor.
+  int centre_rings = 1;
+  // iie: anchors are points whose connectivity beats that of all points within so many rings; 0:
+  // any point.
+  int site_rings = 0;
 };
 
 // One unit and the word it is to carry.
@@ -115,18 +126,25 @@ class Scheme {
 // which every unit carries a part of its own and cells need only survive rounding.
 struct SchemeDefaults {
   WordFormat format;
-  double step = 0;
+  SchemeOptions options;
   WordFormat fill_format;  // its subscript bits are the most that are used
-  double fill_step = 0;
+  SchemeOptions fill_options;
+  // Units are scarce: it pays to search long for more of them, and all are wanted, even those that
+  // move farther.
+  bool has_few_units = false;
 };
 
 [[nodiscard]] std::span<const std::string_view> scheme_names();
 
+// The options with sizes that are relative to the mesh made absolute: they then mean the same for
+// the marked mesh to the last bit.
+[[nodiscard]] SchemeOptions fixed_for(const Mesh& mesh, SchemeOptions options);
+
 // Throws Error Usage for an unknown name.
 [[nodiscard]] SchemeDefaults scheme_defaults(const std::string& name);
 
-// "tsq": similarity invariant; "aie": affine invariant. Throws Error Usage for an unknown name or
-// options out of range.
+// "tsq": similarity invariant; "aie": affine invariant; "iie": noise robust. Throws Error Usage for
+// an unknown name or options out of range.
 [[nodiscard]] std::unique_ptr<Scheme> make_scheme(const std::string& name, const WordCode& code,
                                                   const SchemeOptions& options);
 

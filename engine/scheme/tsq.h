@@ -31,7 +31,9 @@ class TsqScheme final : public Scheme {
  public:
   TsqScheme(const WordCode& code, const SchemeOptions& options);
 
-  [[nodiscard]] static SchemeDefaults defaults() { return {{6, 8, 9}, 0.02, {6, 13, 9}, 0.004}; }
+  [[nodiscard]] static SchemeDefaults defaults() {
+    return {{6, 8, 9}, {.step = 0.02}, {6, 13, 9}, {.step = 0.004}};
+  }
 
   // Anchors are triangles. O(triangles), parallel.
   [[nodiscard]] UnitSet find_units(const Surface& surface) const override;

@@ -1,5 +1,6 @@
 #include "engine/mark.h"
 
+#include <cmath>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -20,18 +21,23 @@ Vec3 unrounded(const Vec3& p) {
   return p;
 }
 
+const test::Solid& ball_for(const MarkOptions& options) {
+  return options.scheme == "iie" ? test::large_ball() : test::bumpy_ball();
+}
+
 Marking mark_ball(const MarkOptions& options = {}) {
-  return mark(test::bumpy_ball().surface(), kMessage, Key::trial(), options, test::as_float, 1e-7);
+  return mark(ball_for(options).surface(), kMessage, Key::trial(), options, test::as_float, 1e-7);
 }
 
 Mesh marked_ball(const MarkOptions& options = {}) {
-  return {mark_ball(options).positions, test::bumpy_ball().mesh.triangles};
+  return {mark_ball(options).positions, ball_for(options).mesh.triangles};
 }
 
 Extraction read(const Mesh& mesh, const Key& key = Key::trial(), const MarkOptions& options = {}) {
   const test::Solid solid(mesh);
   const WordCode code(key, options.format);
-  return extract(solid.surface(), *make_scheme(options.scheme, code, options.scheme_options), code);
+  return extract(solid.surface(), *make_scheme(options.scheme, code, options.scheme_options), code,
+                 options.scheme_options.doubtful_parts);
 }
 
 TEST(Mark, MessageComesBackAndEveryCarrierAgrees) {
@@ -80,7 +86,7 @@ TEST_P(EverySchemesMark, AnotherKeyAndAnUnmarkedMeshYieldNothing) {
   const Mesh marked = marked_ball(options_);
   EXPECT_EQ(read(marked, Key::trial(), options_).message, kMessage);
   for (int i = 0; i < 20; ++i) EXPECT_FALSE(read(marked, Key::generate(), options_).message);
-  EXPECT_FALSE(read(test::bumpy_ball().mesh, Key::trial(), options_).message);
+  EXPECT_FALSE(read(ball_for(options_).mesh, Key::trial(), options_).message);
 }
 
 // 200 unmarked meshes: no false alarm. With a 32-bit tag one is expected in 20 million such runs.
@@ -94,6 +100,63 @@ TEST_P(EverySchemesMark, TwoHundredUnmarkedMeshesRaiseNoAlarm) {
     markers += found.readings.size();
   }
   EXPECT_GT(markers, 200U);  // chance look-alikes there are, so the tag has something to refuse
+}
+
+// A ball folded into itself, one inside out, one with collapsed faces, one of needles.
+std::vector<Mesh> hostile_meshes(const Mesh& ball) {
+  Mesh crossing = ball;
+  for (Vec3& p : crossing.positions) p[0] = std::abs(p[0]) - 0.3 * p[0] * p[0];
+  Mesh inside_out = ball;
+  for (Triangle& triangle : inside_out.triangles) std::swap(triangle[0], triangle[1]);
+  Mesh collapsed = ball;
+  for (std::size_t t = 0; t < ball.triangles.size(); t += 7) {
+    const Triangle& triangle = ball.triangles[t];
+    collapsed.positions[triangle[0]] = collapsed.positions[triangle[1]];
+  }
+  Mesh needles = ball;
+  for (std::size_t i = 0; i < needles.positions.size(); i += 3) needles.positions[i] *= 1e-9;
+  return {crossing, inside_out, collapsed, needles};
+}
+
+TEST_P(EverySchemesMark, HostileMeshesAreMarkedOrRefusedButNeverSpoilt) {
+  for (const Mesh& mesh : hostile_meshes(ball_for(options_).mesh)) {
+    const test::Solid solid(mesh);
+    const Marking marking =
+        mark(solid.surface(), kMessage, Key::trial(), options_, test::as_float, 1e-7);
+    for (const Vec3& p : marking.positions) {
+      EXPECT_TRUE(std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]));
+    }
+    EXPECT_TRUE(flipped_triangles(mesh.triangles, mesh.positions, marking.positions).empty());
+    if (marking.status == MarkStatus::Marked) {
+      EXPECT_EQ(read({marking.positions, mesh.triangles}, Key::trial(), options_).message,
+                kMessage);
+    } else {
+      EXPECT_TRUE(marking.status == MarkStatus::TooSmall ||
+                  marking.status == MarkStatus::TooCoarse);
+    }
+  }
+}
+
+TEST_P(EverySchemesMark, InsideOutIsNoObstacle) {
+  const Mesh mesh = hostile_meshes(ball_for(options_).mesh)[1];
+  const test::Solid solid(mesh);
+  const Marking marking =
+      mark(solid.surface(), kMessage, Key::trial(), options_, test::as_float, 1e-7);
+  ASSERT_EQ(marking.status, MarkStatus::Marked);
+  EXPECT_EQ(read({marking.positions, mesh.triangles}, Key::trial(), options_).message, kMessage);
+}
+
+TEST_P(EverySchemesMark, SheetsThatAreAllBoundaryAreTooSmall) {
+  Mesh soup;
+  for (std::uint32_t i = 0; i < 300; i += 3) {
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      soup.positions.emplace_back(i + (k == 1 ? 1 : 0), k == 2 ? 1 : 0, 0.1 * i);
+    }
+    soup.triangles.push_back({i, i + 1, i + 2});
+  }
+  const test::Solid solid(soup);
+  EXPECT_EQ(mark(solid.surface(), kMessage, Key::trial(), options_, unrounded, 0).status,
+            MarkStatus::TooSmall);
 }
 
 TEST(Mark, UnitsAreDisjointAndOnlyTheirPointsMove) {

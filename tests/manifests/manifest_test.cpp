@@ -51,12 +51,13 @@ TEST(Manifest, LinesOverrideDefaultsOverrideOptions) {
   EXPECT_EQ(jobs[1].out, folder / "x.ply");
   EXPECT_EQ(jobs[1].settings.message, (Message{0, 255}));
   EXPECT_EQ(jobs[1].settings.resolved().scheme_options.step, 0.05);
-  EXPECT_EQ(jobs[1].settings.layout.method, LayoutMethod::FirstFit);
+  EXPECT_EQ(jobs[1].settings.layout, LayoutMethod::FirstFit);
   EXPECT_EQ(jobs[1].settings.assign, AssignMethod::Sum);
   EXPECT_EQ(jobs[1].settings.cost, CostFunction::Rms);
   EXPECT_EQ(jobs[1].settings.resolved().format, (WordFormat{4, 9, 16}));
   EXPECT_TRUE(jobs[2].settings.fill);
-  EXPECT_EQ(jobs[2].settings.resolved().scheme_options.step, scheme_defaults("tsq").fill_step);
+  EXPECT_EQ(jobs[2].settings.resolved().scheme_options.step,
+            scheme_defaults("tsq").fill_options.step);
   EXPECT_EQ(jobs[2].index, 2U);
 }
 

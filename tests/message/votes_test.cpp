@@ -13,7 +13,7 @@ Reading reading_of(const Word& word, float weight) {
   return reading;
 }
 
-TEST(Votes, TheHeavierSideWinsBitByBit) {
+TEST(Votes, TheHeavierSideWins) {
   const WordCode code(Key::trial(), {6, 4, 8});
   const Word word = code.fill_words(1)[0];
   const Word wrong{word.subscript, word.part ^ 0x0fU};
@@ -36,6 +36,21 @@ TEST(Votes, ABitFarFromItsCentreCountsLess) {
   votes.add(reading_of(word, 0.5F));
   votes.add(doubtful);
   EXPECT_EQ(votes.parts()[0], word.part);
+}
+
+// Three look-alikes outweigh the word bit by bit, but not one of them as a whole.
+TEST(Votes, ValuesAreVotedOnAsAWhole) {
+  const WordCode code(Key::trial(), {6, 4, 8});
+  const Word word{code.fill_words(1)[0].subscript, 0x00};
+  Votes votes(code);
+  votes.add(reading_of(word, 1));
+  votes.add(reading_of({word.subscript, 0x0f}, 0.6F));
+  votes.add(reading_of({word.subscript, 0x33}, 0.6F));
+  votes.add(reading_of({word.subscript, 0x55}, 0.6F));
+  const auto rankings = votes.rankings();
+  EXPECT_EQ(rankings[0].size(), Votes::kRanked);
+  EXPECT_EQ(rankings[0][0].part, word.part);
+  EXPECT_GT(rankings[0][0].score, rankings[0][1].score);
 }
 
 TEST(Votes, APartWithoutVotesIsNothing) {

@@ -89,7 +89,8 @@ TEST(WordCode, RefusesWhatCannotBe) {
   EXPECT_THROW((void)code.words_of(random_message(8, 4)), Error);  // 9 parts, 8 subscripts
   EXPECT_THROW((void)code.words_of(Message{}), Error);
   EXPECT_THROW((void)code.words_of(random_message(257, 4)), Error);
-  EXPECT_THROW(WordCode(Key::trial(), {0, 8, 12}), Error);
+  EXPECT_THROW(WordCode(Key::trial(), {-1, 8, 12}), Error);
+  EXPECT_THROW(WordCode(Key::trial(), {17, 8, 12}), Error);
   EXPECT_THROW(WordCode(Key::trial(), {6, 17, 12}), Error);
   EXPECT_THROW(WordCode(Key::trial(), {6, 8, 33}), Error);
 }

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/base/error.h"
+#include "engine/base/random.h"
 #include "engine/extract.h"
 #include "engine/mark.h"
 #include "engine/settle.h"
@@ -130,7 +131,24 @@ TEST(Aie, MessageSurvivesAffineMapsReorderingRoundingAndCropping) {
   }
 }
 
-// A group of several points outlives the loss of some of them.
+// Alternatives of one edge may hold the same points, and then both read the same word.
+TEST(Aie, NoUnitIsReadTwice) {
+  for (const AieGroups groups : {AieGroups::One, AieGroups::All}) {
+    const MarkOptions options = options_with(groups);
+    const WordCode code(Key::trial(), options.format);
+    const auto& ball = test::bumpy_ball();
+    const Marking marking =
+        mark(ball.surface(), kMessage, Key::trial(), options, test::as_float, 1e-7);
+    const Mesh marked{marking.positions, ball.mesh.triangles};
+    const Extraction found =
+        extract({marked, ball.halfedges}, AieScheme(code, options.scheme_options), code);
+    EXPECT_GE(found.agreeing, marking.carriers.size());
+    EXPECT_LE(found.agreeing, marking.carriers.size() * 21 / 20);  // some by chance
+  }
+}
+
+// A group of several points outlives the loss of some of them: as large a share of the points that
+// carry the mark is damaged, and a larger share of the units still agrees.
 TEST(Aie, AllNeighboursOutliveDamageThatOneDoesNot) {
   const auto surviving = [](AieGroups groups) {
     const MarkOptions options = options_with(groups);
@@ -140,15 +158,15 @@ TEST(Aie, AllNeighboursOutliveDamageThatOneDoesNot) {
     const Marking marking =
         mark(ball.surface(), kMessage, Key::trial(), options, test::as_float, 1e-7);
     Mesh damaged{marking.positions, ball.mesh.triangles};
-    for (std::size_t i = 0; i < damaged.positions.size(); i += 25) {
-      damaged.positions[i] *= 1.002;
+    for (std::size_t i = 0; i < damaged.positions.size(); ++i) {
+      const bool carries = marking.positions[i] != ball.mesh.positions[i];
+      if (carries && random_unit(3, i, 0) < 0.1) damaged.positions[i] *= 1.002;
     }
     const Extraction found = extract({damaged, ball.halfedges}, scheme, code);
     EXPECT_EQ(found.message, kMessage);
     return static_cast<double>(found.agreeing) / static_cast<double>(marking.carriers.size());
   };
-  EXPECT_GT(surviving(AieGroups::All), 0.3);
-  EXPECT_GT(surviving(AieGroups::One), 0.3);
+  EXPECT_GT(surviving(AieGroups::All), surviving(AieGroups::One));
 }
 
 // CAD parts: subdivided planes, where the norm in space does not exist.

@@ -19,14 +19,27 @@ namespace {
 
 class EveryScheme : public testing::TestWithParam<std::string_view> {
  protected:
+  // Every place is a candidate, sizes are fixed: what is embedded is read to the last bit.
   [[nodiscard]] std::unique_ptr<Scheme> scheme(CostFunction cost = {}) const {
-    SchemeOptions options = defaults_.scheme_options;
+    SchemeOptions options = fixed_for(test::bumpy_ball().mesh, relative_);
     options.cost = cost;
     return make_scheme(std::string(GetParam()), code_, options);
   }
+  [[nodiscard]] std::unique_ptr<Scheme> relative_scheme() const {
+    return make_scheme(std::string(GetParam()), code_, relative_);
+  }
 
-  MarkOptions defaults_ = default_mark_options(std::string(GetParam()), false);
-  WordCode code_{Key::trial(), defaults_.format};
+  static SchemeOptions options_of(std::string_view name) {
+    SchemeOptions options = scheme_defaults(std::string(name)).options;
+    options.radius_edges = 3.5;
+    options.centre_rings = 1;
+    options.site_rings = 0;
+    return options;
+  }
+
+  SchemeOptions relative_ = options_of(GetParam());
+  WordCode code_{Key::trial(), scheme_defaults(std::string(GetParam())).format};
+  double cost_precision_ = GetParam() == "iie" ? 0.02 : 1e-5;  // see IieScheme::costs
 };
 INSTANTIATE_TEST_SUITE_P(All, EveryScheme,
                          testing::ValuesIn(scheme_names().begin(), scheme_names().end()),
@@ -44,10 +57,20 @@ Chosen choose(const Scheme& scheme, const Surface& surface) {
   return chosen;
 }
 
-std::vector<Placement> random_placements(const Chosen& chosen, std::size_t words) {
+// A word that each unit can carry, drawn at random; units without any are left out.
+std::vector<Placement> random_placements(const Scheme& scheme, const Surface& surface,
+                                         const Chosen& chosen, std::span<const Word> words) {
+  const CostMatrix costs = scheme.costs(surface, chosen.units, chosen.valid, words);
+  const auto count = static_cast<std::uint32_t>(words.size());
   std::vector<Placement> placements;
-  for (const std::uint32_t unit : chosen.valid) {
-    placements.push_back({unit, static_cast<std::uint32_t>(random_bits(1, 2, unit) % words)});
+  for (std::uint32_t i = 0; i < chosen.valid.size(); ++i) {
+    const auto start = static_cast<std::uint32_t>(random_bits(1, 2, i) % count);
+    for (std::uint32_t k = 0; k < count; ++k) {
+      const std::uint32_t word = (start + k) % count;
+      if (costs.at(i, word) == kInfeasible) continue;
+      placements.push_back({chosen.valid[i], word});
+      break;
+    }
   }
   return placements;
 }
@@ -73,24 +96,26 @@ TEST_P(EveryScheme, EveryPlacedWordIsReadBackAtItsAnchor) {
   const auto scheme = this->scheme();
   const Chosen chosen = choose(*scheme, ball.surface());
   const auto words = code_.fill_words(std::min(code_.capacity(), 256U));
-  const auto placements = random_placements(chosen, words.size());
+  const auto placements = random_placements(*scheme, ball.surface(), chosen, words);
   const Embedding embedding = scheme->embed(ball.surface(), chosen.units, placements, words);
   const Mesh marked{embedding.positions, ball.mesh.triangles};
   const auto readings = scheme->read({marked, ball.halfedges});
 
-  const std::set<std::uint32_t> failed(embedding.failed.begin(), embedding.failed.end());
-  EXPECT_LT(failed.size(), placements.size() / 20);
+  EXPECT_GT(placements.size(), chosen.valid.size() * 9 / 10);
+  EXPECT_TRUE(embedding.failed.empty());
+  std::size_t exact = 0;
   for (std::uint32_t i = 0; i < placements.size(); ++i) {
-    if (failed.count(i) != 0) continue;
     const std::uint32_t anchor = chosen.units.anchors[placements[i].unit];
     const auto at = std::lower_bound(
         readings.begin(), readings.end(), anchor,
         [](const Reading& reading, std::uint32_t a) { return reading.anchor < a; });
     ASSERT_TRUE(at != readings.end() && at->anchor == anchor);
     EXPECT_EQ(at->word, words[placements[i].word]);
-    EXPECT_LT(at->worst_offset, 1e-4);
-    EXPECT_GT(at->weight, 0.999);
+    EXPECT_LT(at->worst_offset, 0.2);
+    exact += at->worst_offset < 1e-4 && at->weight > 0.999 ? 1 : 0;
   }
+  // a unit of iie may see a sheet move that it did not see before it moved itself
+  EXPECT_GE(exact * 100, placements.size() * (GetParam() == "iie" ? 95 : 100));
 }
 
 TEST_P(EveryScheme, CostIsTheMoveOfTheUnit) {
@@ -100,15 +125,15 @@ TEST_P(EveryScheme, CostIsTheMoveOfTheUnit) {
     const auto scheme = this->scheme(cost);
     const Chosen chosen = choose(*scheme, ball.surface());
     const CostMatrix costs = scheme->costs(ball.surface(), chosen.units, chosen.valid, words);
-    const auto placements = random_placements(chosen, words.size());
+    const auto placements = random_placements(*scheme, ball.surface(), chosen, words);
     const Embedding embedding = scheme->embed(ball.surface(), chosen.units, placements, words);
-    const std::set<std::uint32_t> failed(embedding.failed.begin(), embedding.failed.end());
-    for (std::uint32_t i = 0; i < placements.size(); ++i) {
-      const float expected = costs.at(i, placements[i].word);
-      EXPECT_EQ(expected == kInfeasible, failed.count(i) != 0);
-      if (failed.count(i) != 0) continue;
+    EXPECT_TRUE(embedding.failed.empty());
+    std::uint32_t row = 0;
+    for (const Placement& placement : placements) {
+      while (chosen.valid[row] != placement.unit) ++row;
+      const float expected = costs.at(row, placement.word);
       double farthest = 0, sum = 0;
-      const auto moved = chosen.units.moved[placements[i].unit];
+      const auto moved = chosen.units.moved[placement.unit];
       for (const std::uint32_t point : moved) {
         const double move = (embedding.positions[point] - ball.mesh.positions[point]).norm();
         farthest = std::max(farthest, move);
@@ -116,18 +141,19 @@ TEST_P(EveryScheme, CostIsTheMoveOfTheUnit) {
       }
       const double rms = std::sqrt(sum / static_cast<double>(moved.size()));
       const double actual = cost == CostFunction::Displacement ? farthest : rms;
-      EXPECT_NEAR(actual, expected, 1e-5 * actual + 1e-9);
+      EXPECT_NEAR(actual, expected, cost_precision_ * actual + 1e-9);
     }
   }
 }
 
 TEST_P(EveryScheme, ReadsTheSameUnderAnySimilarityAndOrder) {
   const auto& ball = test::bumpy_ball();
-  const auto scheme = this->scheme();
+  const auto scheme = relative_scheme();
   const Chosen chosen = choose(*scheme, ball.surface());
   const auto words = code_.fill_words(std::min(code_.capacity(), 256U));
   const Embedding embedding =
-      scheme->embed(ball.surface(), chosen.units, random_placements(chosen, words.size()), words);
+      scheme->embed(ball.surface(), chosen.units,
+                    random_placements(*scheme, ball.surface(), chosen, words), words);
   const auto good_words = [&](const Mesh& mesh) {
     std::multiset<std::pair<std::uint32_t, std::uint32_t>> found;
     const test::Solid solid(mesh);
@@ -148,8 +174,8 @@ TEST_P(EveryScheme, ReadsTheSameUnderAnySimilarityAndOrder) {
 TEST_P(EveryScheme, BoundariesAndTinyMeshesOfferNothing) {
   for (Mesh mesh : {test::tetrahedron(), test::flat_grid(1, 1), Mesh{}}) {
     const test::Solid solid(std::move(mesh));
-    EXPECT_EQ(scheme()->find_units(solid.surface()).size(), 0U);
-    EXPECT_TRUE(scheme()->read(solid.surface()).empty());
+    EXPECT_EQ(relative_scheme()->find_units(solid.surface()).size(), 0U);
+    EXPECT_TRUE(relative_scheme()->read(solid.surface()).empty());
   }
 }
 
@@ -186,7 +212,8 @@ TEST_P(EveryScheme, ResultsDoNotDependOnThreads) {
     const Chosen chosen = choose(*scheme, ball.surface());
     const auto costs = scheme->costs(ball.surface(), chosen.units, chosen.valid, words);
     const auto embedding =
-        scheme->embed(ball.surface(), chosen.units, random_placements(chosen, words.size()), words);
+        scheme->embed(ball.surface(), chosen.units,
+                      random_placements(*scheme, ball.surface(), chosen, words), words);
     return std::make_tuple(chosen.units.anchors, chosen.units.moved.points, costs.values,
                            embedding.positions, embedding.failed);
   });

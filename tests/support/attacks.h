@@ -121,6 +121,42 @@ inline Mesh cropped_half(const Mesh& mesh, std::uint64_t seed) {
   return result;
 }
 
+// Every coordinate shifted by up to `intensity` times the mean distance of the points from their
+// centroid, uniformly. Wang, Lavoue, Denis, Baskurt, He. A benchmark for 3D mesh watermarking
+// (2010).
+inline Mesh with_uniform_noise(const Mesh& mesh, double intensity, std::uint64_t seed) {
+  Vec3 centroid(0, 0, 0);
+  for (const Vec3& p : mesh.positions) centroid += p / static_cast<double>(mesh.positions.size());
+  double radius = 0;
+  for (const Vec3& p : mesh.positions) radius += (p - centroid).norm();
+  radius /= static_cast<double>(mesh.positions.size());
+  Mesh result = mesh;
+  for (std::size_t i = 0; i < result.positions.size(); ++i) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      result.positions[i][axis] += (2 * random_unit(seed, axis, i) - 1) * intensity * radius;
+    }
+  }
+  return result;
+}
+
+// Coordinates rounded to multiples of 2^-bits of the box's side, an axis at a time: the same
+// benchmark.
+inline Mesh quantised(const Mesh& mesh, int bits) {
+  Vec3 low = mesh.positions[0], high = low;
+  for (const Vec3& p : mesh.positions) {
+    low.minimize(p);
+    high.maximize(p);
+  }
+  Mesh result = mesh;
+  for (Vec3& p : result.positions) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double step = std::ldexp(high[axis] - low[axis], -bits);
+      if (step > 0) p[axis] = low[axis] + std::round((p[axis] - low[axis]) / step) * step;
+    }
+  }
+  return result;
+}
+
 // Coordinates as "%.{digits}g" would write them.
 inline Vec3 with_significant_digits(const Vec3& p, int digits) {
   Vec3 result;

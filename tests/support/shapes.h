@@ -46,4 +46,10 @@ inline const Solid& bumpy_ball() {
   return solid;
 }
 
+// The same, for schemes whose units are large: about 60,000 triangles.
+inline const Solid& large_ball() {
+  static const Solid solid(make_sample_shape(SampleShape::Closed, 60000, 7));
+  return solid;
+}
+
 }  // namespace triglyph::test
