@@ -33,6 +33,7 @@ struct MarkArguments {
   std::optional<double> max_move_percent;
   std::filesystem::path records;
   bool json = false;
+  bool detail = false;
   SchemeArguments scheme;
   KeyArgument key;
   MachineArguments machine;
@@ -49,6 +50,7 @@ struct MarkArguments {
     settings.assign = assign_method(assign);
     settings.cost = cost_function(cost);
     settings.redundancy = redundancy;
+    settings.detail = detail;
     if (max_move_percent) settings.max_move_rel_diag = *max_move_percent / 100;
     // fails early on a message that cannot be, before any mesh is opened
     if (!fill) (void)WordCode(Key::trial(), settings.resolved().format).words_of(settings.message);
@@ -196,6 +198,8 @@ void add_mark_verb(CLI::App& app, Action& action) {
   verb->add_option("--records", arguments->records, "Write one JSON record a mesh to this file")
       ->type_name("FILE");
   verb->add_flag("--json", arguments->json, "Print the records instead of a table");
+  verb->add_flag("--detail", arguments->detail,
+                 "Write every unit into the record, for verify --detail [always with iie]");
   arguments->scheme.add_to(*verb);
   arguments->key.add_to(*verb);
   arguments->machine.add_threads_to(*verb);

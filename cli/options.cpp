@@ -25,7 +25,7 @@ void SchemeArguments::add_to(CLI::App& verb) {
       ->check(CLI::IsMember(strings(scheme_names())))
       ->capture_default_str();
   verb.add_option("--marker-bits", marker_bits_, "Bits of the marker, m [the scheme's]")
-      ->check(CLI::Range(1, 16));
+      ->check(CLI::Range(0, 16));
   verb.add_option("--subscript-bits", subscript_bits_,
                   "Bits of the subscript, s; with --fill the most it may use [the scheme's]")
       ->check(CLI::Range(1, 16));

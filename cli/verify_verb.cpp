@@ -6,8 +6,8 @@
 #include "cli/options.h"
 #include "cli/verbs.h"
 #include "engine/base/error.h"
-#include "manifests/pipeline.h"
 #include "manifests/run.h"
+#include "manifests/verify.h"
 
 namespace triglyph {
 namespace {
@@ -15,6 +15,7 @@ namespace {
 struct VerifyArguments {
   std::filesystem::path records;
   bool json = false;
+  bool detail = false;
   KeyArgument key;
   MachineArguments machine;
 };
@@ -26,6 +27,37 @@ RecordedMark parse_line(const VerifyArguments& arguments, const std::string& lin
   throw Error(ErrorCode::Malformed, arguments.records, at_line(number), error.message());
 }
 
+// "3-17 20 22-24"
+std::string ranges(const std::vector<std::uint64_t>& numbers) {
+  std::string text;
+  for (std::size_t i = 0; i < numbers.size();) {
+    std::size_t end = i + 1;
+    while (end < numbers.size() && numbers[end] == numbers[end - 1] + 1) ++end;
+    if (!text.empty()) text += ' ';
+    text += std::to_string(numbers[i]);
+    if (end - i > 1) text += '-' + std::to_string(numbers[end - 1]);
+    i = end;
+  }
+  return text;
+}
+
+void print_damage(const Verification& found) {
+  const bool readable = found.verdict == FileVerdict::Intact ||
+                        found.verdict == FileVerdict::Altered || found.verdict == FileVerdict::Lost;
+  if (!found.damage) {
+    if (readable)
+      std::cout << "  damage cannot be located: no units in the record, or renumbered\n";
+    return;
+  }
+  std::cout << "  " << found.damage->units_damaged << " of " << found.damage->units_expected
+            << " units damaged";
+  if (!found.damage->vertices.empty()) {
+    std::cout << ", at " << found.damage->vertices.size()
+              << " vertices: " << ranges(found.damage->vertices);
+  }
+  std::cout << "\n";
+}
+
 void print(const VerifyArguments& arguments, const RecordedMark& recorded,
            const Verification& found) {
   if (arguments.json) {
@@ -34,6 +66,11 @@ void print(const VerifyArguments& arguments, const RecordedMark& recorded,
                                    {"units_recorded", recorded.units_embedded},
                                    {"units_found", found.units_found}};
     if (!found.detail.empty()) json["detail"] = found.detail;
+    if (found.damage) {
+      json["damage"] = {{"units_expected", found.damage->units_expected},
+                        {"units_damaged", found.damage->units_damaged},
+                        {"vertices", found.damage->vertices}};
+    }
     std::cout << to_line(json);
     return;
   }
@@ -41,6 +78,7 @@ void print(const VerifyArguments& arguments, const RecordedMark& recorded,
             << " of " << recorded.units_embedded << " units";
   if (!found.detail.empty()) std::cout << " (" << found.detail << ")";
   std::cout << "\n";
+  if (arguments.detail) print_damage(found);
 }
 
 int run_verify(const VerifyArguments& arguments) {
@@ -54,7 +92,7 @@ int run_verify(const VerifyArguments& arguments) {
     std::string line;
     for (std::size_t number = 1; std::getline(stream, line); ++number) {
       const RecordedMark recorded = parse_line(arguments, line, number);
-      const Verification found = verify_file(recorded, key);
+      const Verification found = verify_file(recorded, key, arguments.detail);
       all_good = all_good &&
                  (found.verdict == FileVerdict::Intact || found.verdict == FileVerdict::NotMarked);
       print(arguments, recorded, found);
@@ -73,6 +111,9 @@ void add_verify_verb(CLI::App& app, Action& action) {
       ->required()
       ->type_name("RECORDS");
   verb->add_flag("--json", arguments->json, "One JSON object a record");
+  verb->add_flag("--detail", arguments->detail,
+                 "Say which units are damaged and where, if the record names them (iie, or mark "
+                 "--detail)");
   arguments->key.add_to(*verb);
   arguments->machine.add_threads_to(*verb);
   verb->callback([&action, arguments] { action = [arguments] { return run_verify(*arguments); }; });

@@ -30,6 +30,10 @@ struct JobSettings {
   AssignMethod assign = MarkOptions{}.assign;
   std::uint32_t redundancy = MarkOptions{}.redundancy;
   std::optional<double> max_move_rel_diag;
+  bool detail = false;  // write down every unit, so that verify can say which are damaged
+
+  // With iie, whose use that is, always.
+  [[nodiscard]] bool wants_detail() const { return detail || scheme == "iie"; }
 
   // Throws Error Usage for an unknown scheme.
   [[nodiscard]] MarkOptions resolved() const;

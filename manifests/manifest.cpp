@@ -61,6 +61,8 @@ bool apply(const std::string& key, const Json& value, JobSettings& settings) {
     settings.radius_edges = value.get<double>();
   } else if (key == "radius") {
     settings.radius = value.get<double>();
+  } else if (key == "detail") {
+    settings.detail = value.get<bool>();
   } else if (key == "site_rings") {
     settings.site_rings = value.get<int>();
   } else if (key == "conflicts") {

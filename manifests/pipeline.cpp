@@ -6,6 +6,7 @@
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
 #include "engine/metric/hausdorff.h"
+#include "manifests/readable.h"
 
 namespace triglyph {
 namespace {
@@ -47,38 +48,6 @@ void run_stage(Task& task, double& seconds, const Stage& stage) noexcept {
     end(task, Status::Failed, task.record.job.mesh.string() + ": " + error.what());
   }
   seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-// A written or found file with what it takes to read it.
-struct Readable {
-  MeshFile file;
-  Halfedges halfedges;
-
-  explicit Readable(const std::filesystem::path& path)
-      : file(MeshFile::open(path)), halfedges(build_halfedges(file.mesh())) {}
-  [[nodiscard]] Surface surface() const { return {file.mesh(), halfedges}; }
-};
-
-// Units of the task's marking whose whole word stands in the file that was read.
-std::uint32_t count_carriers(const Marking& marking, std::span<const Reading> readings) {
-  std::uint32_t count = 0;
-  auto reading = readings.begin();
-  for (const Carrier& carrier : marking.carriers) {
-    while (reading != readings.end() && reading->anchor < carrier.anchor) ++reading;
-    if (reading == readings.end()) break;
-    if (reading->anchor == carrier.anchor && reading->word == marking.words[carrier.word]) ++count;
-  }
-  return count;
-}
-
-// Units that carry one of the words, wherever they stand.
-std::uint32_t count_words(const WordCode& code, std::span<const Word> words,
-                          std::span<const Reading> readings) {
-  return static_cast<std::uint32_t>(
-      std::count_if(readings.begin(), readings.end(), [&](const Reading& reading) {
-        const std::uint32_t index = code.part_index(reading.word.subscript);
-        return index < words.size() && words[index] == reading.word;
-      }));
 }
 
 void describe(const Marking& marking, Record& record) {
@@ -158,7 +127,10 @@ void read_back(Task& task, const Key& key) noexcept {
     const Readable written(task.output->temporary_path());
     const Extraction found =
         extract(written.surface(), *scheme, code, record.options.scheme_options.doubtful_parts);
-    record.units_embedded = count_carriers(task.marking, found.readings);
+    std::vector<Carrier> embedded =
+        carriers_read(task.marking.carriers, task.marking.words, found.readings);
+    record.units_embedded = static_cast<std::uint32_t>(embedded.size());
+    if (settings.wants_detail()) record.units = std::move(embedded);
     const bool verified = settings.fill
                               ? record.units_embedded > 0 &&
                                     record.units_embedded >= task.marking.carriers.size() * 99 / 100
@@ -202,59 +174,6 @@ FileExtraction extract_file(const std::filesystem::path& path, const Key& key,
   const auto scheme = make_scheme(options.scheme, code, options.scheme_options);
   return {extract(readable.surface(), *scheme, code, options.scheme_options.doubtful_parts),
           readable.file.vertex_count(), readable.file.face_count()};
-}
-
-std::string_view name_of(FileVerdict verdict) {
-  switch (verdict) {
-    case FileVerdict::Intact:
-      return "intact";
-    case FileVerdict::Altered:
-      return "altered, mark present";
-    case FileVerdict::Missing:
-      return "missing";
-    case FileVerdict::Lost:
-      return "mark lost";
-    case FileVerdict::Damaged:
-      return "damaged";
-    case FileVerdict::NotMarked:
-      return "not marked";
-  }
-  return "";
-}
-
-Verification verify_file(const RecordedMark& recorded, const Key& key) {
-  if (recorded.status != Status::Marked) {
-    return {FileVerdict::NotMarked, 0,
-            "the record says \"" + std::string(name_of(recorded.status)) + "\""};
-  }
-  if (!std::filesystem::exists(recorded.out)) {
-    return {FileVerdict::Missing, 0, recorded.out.string() + ": no such file"};
-  }
-  try {
-    const Readable readable(recorded.out);
-    const WordCode code(key, recorded.options.format);
-    const auto scheme = make_scheme(recorded.options.scheme, code, recorded.options.scheme_options);
-    const Extraction found =
-        extract(readable.surface(), *scheme, code, recorded.options.scheme_options.doubtful_parts);
-    const std::vector<Word> words =
-        recorded.fill ? code.fill_words(recorded.parts) : code.words_of(recorded.message);
-    Verification result;
-    result.units_found = count_words(code, words, found.readings);
-    const bool carries = recorded.fill ? 2 * result.units_found > recorded.units_embedded
-                                       : found.message == recorded.message;
-    if (!carries) {
-      const bool other_key = recorded.key_fingerprint != key.fingerprint();
-      return {FileVerdict::Lost, result.units_found,
-              other_key ? "marked under another key, " + recorded.key_fingerprint
-                        : "the message is not in the file"};
-    }
-    const bool same = content_hash(readable.file.bytes()) == recorded.output_hash;
-    result.verdict = same ? FileVerdict::Intact : FileVerdict::Altered;
-    if (!same) result.detail = "the bytes differ from those written";
-    return result;
-  } catch (const Error& error) {
-    return {FileVerdict::Damaged, 0, error.what()};
-  }
 }
 
 std::uint64_t estimate_memory(std::uint64_t file_bytes, std::string_view extension) {

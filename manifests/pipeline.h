@@ -40,24 +40,6 @@ struct FileExtraction {
 [[nodiscard]] FileExtraction extract_file(const std::filesystem::path& path, const Key& key,
                                           const MarkOptions& options);
 
-// What verify says about the file of a record.
-enum class FileVerdict {
-  Intact,     // byte for byte what was written, and it carries its message
-  Altered,    // other bytes, but it still carries its message
-  Missing,    // no file
-  Lost,       // readable, but the message is not there
-  Damaged,    // not readable as a mesh
-  NotMarked,  // the record is of a mesh that was not marked
-};
-[[nodiscard]] std::string_view name_of(FileVerdict verdict);
-
-struct Verification {
-  FileVerdict verdict = FileVerdict::NotMarked;
-  std::uint32_t units_found = 0;  // units that carry a word of the mark
-  std::string detail;             // why, in one line; empty if intact
-};
-[[nodiscard]] Verification verify_file(const RecordedMark& recorded, const Key& key);
-
 // Bytes of memory that a mesh of this file size takes at most while it is worked on.
 [[nodiscard]] std::uint64_t estimate_memory(std::uint64_t file_bytes, std::string_view extension);
 

@@ -59,6 +59,26 @@ Json options_of(const Record& record) {
   return json;
 }
 
+// [[anchor, part], ...]
+Json units_of(std::span<const Carrier> carriers) {
+  Json json = Json::array();
+  for (const Carrier& carrier : carriers) json.push_back({carrier.anchor, carrier.word});
+  return json;
+}
+
+std::vector<Carrier> units_in(const nlohmann::json& json, std::uint32_t parts) {
+  std::vector<Carrier> carriers;
+  for (const auto& unit : json) {
+    carriers.push_back({unit.at(0).get<std::uint32_t>(), unit.at(1).get<std::uint32_t>()});
+    const bool ascends =
+        carriers.size() < 2 || carriers[carriers.size() - 2].anchor < carriers.back().anchor;
+    if (!ascends || carriers.back().word >= parts) {
+      throw Error(ErrorCode::Malformed, {}, "", "units that cannot be");
+    }
+  }
+  return carriers;
+}
+
 // What extraction must know of them.
 SchemeOptions scheme_options_of(const nlohmann::json& options) {
   SchemeOptions scheme;
@@ -115,8 +135,11 @@ Json to_json(const Record& record, std::uint64_t peak_bytes) {
                    {"input_hash", record.input_hash},
                    {"output_hash", record.output_hash},
                    {"key", record.key_fingerprint},
-                   {"options", options_of(record)},
-                   {"run",
+                   {"options", options_of(record)}});
+  if (settings.wants_detail() && record.status == Status::Marked) {
+    json["units"] = units_of(record.units);
+  }
+  json.update(Json{{"run",
                     {{"load_s", record.times.load},
                      {"mark_s", record.times.mark},
                      {"write_s", record.times.write},
@@ -150,6 +173,9 @@ RecordedMark parse_record(const std::string& line) try {
   validate(mark.options.format);
   mark.parts = json.at("parts").get<std::uint32_t>();
   mark.units_embedded = json.at("units_embedded").get<std::uint32_t>();
+  mark.points = json.at("points").get<std::uint64_t>();
+  mark.faces = json.at("faces").get<std::uint64_t>();
+  if (json.contains("units")) mark.units = units_in(json.at("units"), mark.parts);
   mark.output_hash = json.at("output_hash").get<std::string>();
   mark.key_fingerprint = json.at("key").get<std::string>();
   return mark;

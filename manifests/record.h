@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -59,6 +60,7 @@ struct Record {
   double hausdorff_rel_diag = 0;  // share of the bounding box's diagonal
   double displacement_max = 0;    // model units
   double displacement_rms = 0;
+  std::vector<Carrier> units;  // that were embedded, if detail is wanted; ascending by anchor
   std::string input_hash;
   std::string output_hash;
   std::string key_fingerprint;
@@ -81,6 +83,9 @@ struct RecordedMark {
   MarkOptions options;
   std::uint32_t parts = 0;
   std::uint32_t units_embedded = 0;
+  std::uint64_t points = 0;
+  std::uint64_t faces = 0;
+  std::optional<std::vector<Carrier>> units;  // nothing: not written down
   std::string output_hash;
   std::string key_fingerprint;
 };

@@ -4,9 +4,12 @@
 
 #include "engine/layout/layout.h"
 #include "engine/mark.h"
+#include "engine/mesh/edge_length.h"
 #include "engine/mesh/halfedges.h"
+#include "engine/mesh/mesh_file.h"
 #include "engine/mesh/sample_shapes.h"
 #include "engine/metric/hausdorff.h"
+#include "engine/scheme/integral_invariants.h"
 
 namespace triglyph {
 namespace {
@@ -62,6 +65,24 @@ void BM_Read(benchmark::State& state, const std::string& scheme) {
   count_triangles(state, subject.mesh);
 }
 
+// Area and volume invariants about every vertex of the bunny, balls of 4 mean edges.
+void BM_InvariantsOfBunny(benchmark::State& state) {
+  const std::filesystem::path bunny = "/usr/share/glmark2/models/bunny.obj";
+  if (!std::filesystem::exists(bunny)) {
+    state.SkipWithError("glmark2-data is not installed");
+    return;
+  }
+  const Mesh mesh = MeshFile::open(bunny).mesh();
+  const std::vector<char> unfit(mesh.triangles.size(), 0);
+  const double radius = 4 * mean_edge_length(mesh);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(all_ball_invariants(mesh.positions, mesh.triangles, unfit,
+                                                 mesh.positions, radius, mesh.triangles.size()));
+  }
+  state.counters["balls/s"] = benchmark::Counter(static_cast<double>(mesh.positions.size()),
+                                                 benchmark::Counter::kIsIterationInvariantRate);
+}
+
 void BM_MarkMessage(benchmark::State& state, const std::string& scheme) {
   const Subject subject(static_cast<std::size_t>(state.range(0)), scheme);
   const Message message{1, 2, 3, 4, 5, 6, 7, 8};
@@ -97,6 +118,7 @@ void small_sizes(benchmark::internal::Benchmark* bench) {
 BENCHMARK(BM_Halfedges)->Apply(sizes);
 BENCHMARK_CAPTURE(BM_FindUnits, tsq, "tsq")->Apply(sizes);
 BENCHMARK_CAPTURE(BM_FindUnits, aie, "aie")->Apply(sizes);
+BENCHMARK_CAPTURE(BM_FindUnits, iie, "iie")->Apply(small_sizes);
 BENCHMARK_CAPTURE(BM_Layout, first_fit, LayoutMethod::FirstFit)->Apply(sizes);
 BENCHMARK_CAPTURE(BM_Layout, min_degree, LayoutMethod::MinDegree)->Apply(sizes);
 BENCHMARK_CAPTURE(BM_Layout, static_degree, LayoutMethod::StaticDegree)->Apply(sizes);
@@ -105,8 +127,11 @@ BENCHMARK_CAPTURE(BM_Layout, ant_colony, LayoutMethod::AntColony)->Apply(small_s
 BENCHMARK_CAPTURE(BM_Layout, local_search, LayoutMethod::LocalSearch)->Apply(sizes);
 BENCHMARK_CAPTURE(BM_Read, tsq, "tsq")->Apply(sizes);
 BENCHMARK_CAPTURE(BM_Read, aie, "aie")->Apply(sizes);
+BENCHMARK_CAPTURE(BM_Read, iie, "iie")->Apply(small_sizes);
 BENCHMARK_CAPTURE(BM_MarkMessage, tsq, "tsq")->Apply(sizes);
 BENCHMARK_CAPTURE(BM_MarkMessage, aie, "aie")->Apply(sizes);
+BENCHMARK_CAPTURE(BM_MarkMessage, iie, "iie")->Apply(small_sizes);
+BENCHMARK(BM_InvariantsOfBunny)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(BM_HausdorffOfMove)->Apply(sizes);
 
 }  // namespace

@@ -324,4 +324,22 @@ std::vector<Reading> AieScheme::read(const Surface& surface) const {
   return parallel_collect<Reading>(surface.halfedges.kernel.n_edges(), read_edge);
 }
 
+PointLists AieScheme::points_of(const Surface& surface,
+                                std::span<const std::uint32_t> anchors) const {
+  PointLists lists;
+  for (const std::uint32_t anchor : anchors) {
+    std::vector<std::uint32_t> points;
+    if (anchor / kAlternatives < surface.halfedges.kernel.n_edges()) {
+      const auto around = neighbourhood_of(surface, anchor / kAlternatives, false, rule_of(anchor));
+      if (around) {
+        points.assign(around->basis.begin(), around->basis.end());
+        points.insert(points.end(), around->all_groups().begin(), around->all_groups().end());
+      }
+    }
+    std::sort(points.begin(), points.end());
+    lists.append(points);
+  }
+  return lists;
+}
+
 }  // namespace triglyph

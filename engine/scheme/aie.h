@@ -57,6 +57,9 @@ class AieScheme final : public Scheme {
   // another grouping of its edge is read once, not twice.
   [[nodiscard]] std::vector<Reading> read(const Surface& surface) const override;
 
+  [[nodiscard]] PointLists points_of(const Surface& surface,
+                                     std::span<const std::uint32_t> anchors) const override;
+
   static constexpr std::uint32_t kAlternatives = 2;
 
  private:

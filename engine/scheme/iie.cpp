@@ -22,8 +22,8 @@ constexpr double kMargin = 0.02;  // of the radius: what a shift of the centre m
 constexpr double kVolumeStep =
     1.3;                            // cells of the volume over those of the area, as their noise is
 constexpr double kFlatCap = 0.5;    // of the radius: so far the cap moves as one
-constexpr double kMaxShift = 0.2;   // of the radius, of the centre
-constexpr double kMaxMove = 0.15;   // of the radius, of a point
+constexpr double kMaxShift = 0.25;   // of the radius, of the centre
+constexpr double kMaxMove = 0.22;   // of the radius, of a point
 constexpr int kSamples = 17;        // of the invariants along a centre's way
 constexpr double kSharpness = 4.5;  // a cell's border lies three standard deviations of noise away
 constexpr std::size_t kUnitsPerTask = 4;
@@ -172,12 +172,14 @@ struct IieScheme::Ground {
         points, [&](std::size_t i, std::vector<std::uint32_t>& out) {
           const auto point = static_cast<std::uint32_t>(i);
           if (signatures[point] == 0) return;
-          const auto near = points_within(surface.halfedges, point, rings);
-          const bool beats_all =
-              near && std::all_of(near->begin(), near->end(), [&](std::uint32_t other) {
-                return signatures[other] <= signatures[point];
-              });
-          if (beats_all) out.push_back(point);
+          const auto beats_all_within = [&](int so_many) {
+            const auto near = points_within(surface.halfedges, point, so_many);
+            return near && std::all_of(near->begin(), near->end(), [&](std::uint32_t other) {
+                     return signatures[other] <= signatures[point];
+                   });
+          };
+          // nearly all points fail already against their neighbours
+          if (beats_all_within(std::min(rings, 1)) && beats_all_within(rings)) out.push_back(point);
         });
   }
 
@@ -547,6 +549,30 @@ std::vector<Reading> IieScheme::read(const Surface& surface) const {
     places.push_back(centres[i]);
   }
   return keep_best_apart(std::move(readings), places, ground.radius);
+}
+
+// The points within the ball; where that is no ball any more, those of its centre.
+PointLists IieScheme::points_of(const Surface& surface,
+                                std::span<const std::uint32_t> anchors) const {
+  const Ground ground(surface, options_, site_seed_);
+  PointLists lists;
+  for (const std::uint32_t anchor : anchors) {
+    std::vector<std::uint32_t> points;
+    if (anchor < surface.mesh.positions.size()) {
+      points = points_within(surface.halfedges, anchor, options_.centre_rings)
+                   .value_or(std::vector<std::uint32_t>{anchor});
+      const auto near = ground.index.triangles_in_ball(ground.mean_of(points), ground.radius,
+                                                       ground.most_triangles);
+      for (const std::uint32_t triangle : near.value_or(std::vector<std::uint32_t>{})) {
+        const Triangle& corners = surface.mesh.triangles[triangle];
+        points.insert(points.end(), corners.begin(), corners.end());
+      }
+    }
+    std::sort(points.begin(), points.end());
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+    lists.append(points);
+  }
+  return lists;
 }
 
 }  // namespace triglyph

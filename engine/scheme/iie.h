@@ -2,12 +2,12 @@
 // sphere that lies inside the surface carries marker and subscript, the share of its volume the
 // part.
 //
-//          .-' .  centre  . '-.         The centre is the mean of the points within two rings
-//        .'   _____.-*-._____  '.       of the anchor. The cap of points that no triangle
-//       / .--'  <-- cap -->  '--.\      crossing the sphere uses moves along one direction n:
-//      |-'                       '-|    first all of it, which moves the centre and so changes
-//       \         inside         /      the area; then all but the points of the centre, which
-//        '.                    .'       changes the volume and no longer the area.
+//          .-' .  centre  . '-.         The centre is the mean of the anchor and its one-ring.
+//        .'   _____.-*-._____  '.       The cap of points that no triangle crossing the sphere
+//       / .--'  <-- cap -->  '--.\      uses moves along one direction n: first all of it, which
+//      |-'                       '-|    moves the centre and so changes the area; then all but
+//       \         inside         /      the points of the centre, which changes the volume and
+//        '.                    .'       no longer the area.
 //          '-.____________.-'
 //
 // This work is based on:
@@ -42,10 +42,10 @@ class IieScheme final : public Scheme {
 
   [[nodiscard]] static SchemeDefaults defaults() {
     return {.format = {0, 5, 4},
-            .options = {.step = 0.005,
+            .options = {.step = 0.007,
                         .doubtful_parts = 10,
-                        .radius_edges = 4.2,
-                        .centre_rings = 2,
+                        .radius_edges = 3.8,
+                        .centre_rings = 1,
                         .site_rings = 4},
             .fill_format = {1, 9, 6},
             .fill_options = {.step = 1.25e-4},
@@ -67,6 +67,9 @@ class IieScheme final : public Scheme {
 
   // Of several readings within one ball only the best centred stays: two units never lie so close.
   [[nodiscard]] std::vector<Reading> read(const Surface& surface) const override;
+
+  [[nodiscard]] PointLists points_of(const Surface& surface,
+                                     std::span<const std::uint32_t> anchors) const override;
 
  private:
   struct Ground;  // a surface with all that is worked out once for it

@@ -101,6 +101,14 @@ class Disc {
   double solid_angle_ = 0;
 };
 
+// Of a whole triangle, seen from the origin; `squares` of its corners' distances.
+// Van Oosterom, Strackee (1983).
+double solid_angle_of(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& squares,
+                      double six_volumes) {
+  const double p = std::sqrt(squares[0]), q = std::sqrt(squares[1]), r = std::sqrt(squares[2]);
+  return 2 * std::atan2(six_volumes, p * q * r + dot(a, b) * r + dot(a, c) * q + dot(b, c) * p);
+}
+
 // A centre on the surface sees the triangles it lies on from their edge, which tells nothing; one
 // just inside sees them as they are.
 Vec3 off_the_surface(std::span<const Vec3> positions, std::span<const Triangle> mesh,
@@ -127,6 +135,7 @@ BallInvariants ball_invariants(std::span<const Vec3> positions, std::span<const 
                                std::span<const std::uint32_t> triangles, const Vec3& ideal_centre,
                                double radius) {
   const Vec3 centre = off_the_surface(positions, mesh, triangles, ideal_centre, radius);
+  const double squared_radius = radius * radius;
   double solid_angle = 0;  // of all T', signed
   double cones = 0;        // sum of d |T'|
   for (const std::uint32_t index : triangles) {
@@ -136,6 +145,14 @@ BallInvariants ball_invariants(std::span<const Vec3> positions, std::span<const 
     const Vec3 ab = b - a;
     const Vec3 area_vector = cross(ab, c - a);
     const double twice_area = area_vector.norm();
+    const double six_volumes = dot(area_vector, a);
+    const Vec3 squares(a.sqrnorm(), b.sqrnorm(), c.sqrnorm());
+    if (squares.max() <= squared_radius &&
+        std::abs(six_volumes) > kOnSurface * radius * twice_area) {
+      solid_angle += solid_angle_of(a, b, c, squares, six_volumes);
+      cones += six_volumes / 2;
+      continue;
+    }
     const double base = ab.norm();
     if (!(twice_area > 0 && base > 0)) continue;
     const Vec3 normal = area_vector / twice_area;

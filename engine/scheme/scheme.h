@@ -120,6 +120,12 @@ class Scheme {
   // Everything in the mesh that shows the marker, by strictly ascending anchor, the anchors being
   // those of find_units. Blind: knows nothing of the original.
   [[nodiscard]] virtual std::vector<Reading> read(const Surface& surface) const = 0;
+
+  // Where a unit lies: the points it depends on, as the surface now is, ascending. Of an anchor
+  // that the surface does not have, or that no unit can stand at any more, what is left, or
+  // nothing.
+  [[nodiscard]] virtual PointLists points_of(const Surface& surface,
+                                             std::span<const std::uint32_t> anchors) const = 0;
 };
 
 // What a scheme uses where the user says nothing: for a message, and for the paper's experiment, in

@@ -387,4 +387,19 @@ std::vector<Reading> TsqScheme::read(const Surface& surface) const {
   return parallel_collect<Reading>(surface.mesh.triangles.size(), read_face);
 }
 
+PointLists TsqScheme::points_of(const Surface& surface,
+                                std::span<const std::uint32_t> anchors) const {
+  PointLists lists;
+  for (const std::uint32_t face : anchors) {
+    std::optional<Quadruple> points;
+    if (face < surface.mesh.triangles.size()) {
+      points = quadruple_of(surface, face, longest_side(surface.mesh, face));
+    }
+    if (points) std::sort(points->begin(), points->end());
+    lists.append(points ? std::span<const std::uint32_t>(*points)
+                        : std::span<const std::uint32_t>());
+  }
+  return lists;
+}
+
 }  // namespace triglyph

@@ -49,6 +49,9 @@ class TsqScheme final : public Scheme {
 
   [[nodiscard]] std::vector<Reading> read(const Surface& surface) const override;
 
+  [[nodiscard]] PointLists points_of(const Surface& surface,
+                                     std::span<const std::uint32_t> anchors) const override;
+
  private:
   // The two quantised numbers of one triangle's shape.
   struct Channel {

@@ -152,44 +152,6 @@ TEST(Records, ComeBackFromTheirLine) {
   EXPECT_THROW((void)parse_record("{\"schema\": 1}"), Error);
 }
 
-TEST(VerifyFile, TellsIntactAlteredLostAndMissingApart) {
-  const Collection collection;
-  const auto records = collection.run({}, collection.folder() / "out");
-  const RecordedMark mark = parse_record(to_json(records[0], 0).dump());
-  EXPECT_EQ(verify_file(mark, Key::trial()).verdict, FileVerdict::Intact);
-  EXPECT_EQ(verify_file(mark, Key::generate()).verdict, FileVerdict::Lost);
-
-  const std::string bytes = test::read_all(mark.out);
-  std::ofstream(mark.out, std::ios::app) << "# a comment\n";
-  EXPECT_EQ(verify_file(mark, Key::trial()).verdict, FileVerdict::Altered);
-  std::ofstream(mark.out) << bytes.substr(0, bytes.size() / 3) << "\nv 1 2\n";
-  EXPECT_EQ(verify_file(mark, Key::trial()).verdict, FileVerdict::Damaged);
-  fs::copy_file(records[0].job.mesh, mark.out, fs::copy_options::overwrite_existing);
-  EXPECT_EQ(verify_file(mark, Key::trial()).verdict, FileVerdict::Lost);
-  fs::remove(mark.out);
-  EXPECT_EQ(verify_file(mark, Key::trial()).verdict, FileVerdict::Missing);
-  const RecordedMark bad = parse_record(to_json(records[7], 0).dump());
-  EXPECT_EQ(verify_file(bad, Key::trial()).verdict, FileVerdict::NotMarked);
-}
-
-TEST(VerifyFile, KnowsAFilledMesh) {
-  const Collection collection;
-  JobSettings settings;
-  settings.fill = true;
-  MeshList jobs({collection.folder() / "in/0.obj"}, settings, collection.folder() / "fill");
-  std::vector<Record> records;
-  const std::atomic<bool> stop{false};
-  run_jobs(
-      jobs, Key::trial(), {}, [&](const Record& record) { records.push_back(record); }, stop);
-  ASSERT_EQ(records.size(), 1U);
-  ASSERT_EQ(records[0].status, Status::Marked) << records[0].error;
-  EXPECT_EQ(records[0].parts, records[0].units_valid);
-  const RecordedMark mark = parse_record(to_json(records[0], 0).dump());
-  const Verification found = verify_file(mark, Key::trial());
-  EXPECT_EQ(found.verdict, FileVerdict::Intact);
-  EXPECT_GE(found.units_found, records[0].units_embedded);
-}
-
 // The whole way through every pair of formats that a marked mesh may be converted to.
 TEST(Formats, MessageSurvivesConversionFromAnyToAny) {
   const Collection collection;

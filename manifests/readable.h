@@ -1,0 +1,41 @@
+// A written or found file with what it takes to read it.
+#pragma once
+
+#include <algorithm>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "engine/mark.h"
+#include "engine/mesh/halfedges.h"
+#include "engine/mesh/mesh_file.h"
+
+namespace triglyph {
+
+struct Readable {
+  MeshFile file;
+  Halfedges halfedges;
+
+  // Throws Error as MeshFile::open does.
+  explicit Readable(const std::filesystem::path& path)
+      : file(MeshFile::open(path)), halfedges(build_halfedges(file.mesh())) {}
+  [[nodiscard]] Surface surface() const { return {file.mesh(), halfedges}; }
+};
+
+// The carriers whose whole word was read at their anchor. Both ascend by anchor. O(both).
+inline std::vector<Carrier> carriers_read(std::span<const Carrier> carriers,
+                                          std::span<const Word> words,
+                                          std::span<const Reading> readings) {
+  std::vector<Carrier> found;
+  auto reading = readings.begin();
+  for (const Carrier& carrier : carriers) {
+    while (reading != readings.end() && reading->anchor < carrier.anchor) ++reading;
+    if (reading == readings.end()) break;
+    if (reading->anchor == carrier.anchor && reading->word == words[carrier.word]) {
+      found.push_back(carrier);
+    }
+  }
+  return found;
+}
+
+}  // namespace triglyph

@@ -1,0 +1,131 @@
+#include "manifests/verify.h"
+
+#include <algorithm>
+
+#include "engine/base/error.h"
+#include "engine/extract.h"
+#include "engine/message/key.h"
+#include "manifests/readable.h"
+
+namespace triglyph {
+namespace {
+
+// Units that carry one of the words, wherever they stand.
+std::uint32_t count_words(const WordCode& code, std::span<const Word> words,
+                          std::span<const Reading> readings) {
+  return static_cast<std::uint32_t>(
+      std::count_if(readings.begin(), readings.end(), [&](const Reading& reading) {
+        const std::uint32_t index = code.part_index(reading.word.subscript);
+        return index < words.size() && words[index] == reading.word;
+      }));
+}
+
+std::vector<std::uint32_t> anchors_not_among(std::span<const Carrier> expected,
+                                             std::span<const Carrier> found) {
+  std::vector<std::uint32_t> anchors;
+  auto next = found.begin();
+  for (const Carrier& carrier : expected) {
+    if (next != found.end() && *next == carrier) {
+      ++next;
+    } else {
+      anchors.push_back(carrier.anchor);
+    }
+  }
+  return anchors;
+}
+
+std::vector<std::uint64_t> vertices_of(const MeshFile& file, const PointLists& lists) {
+  std::vector<char> touched(file.mesh().positions.size(), 0);
+  for (const std::uint32_t point : lists.points) touched[point] = 1;
+  std::vector<std::uint64_t> vertices;
+  const auto points = file.point_of_vertex();
+  for (std::size_t vertex = 0; vertex < points.size(); ++vertex) {
+    if (touched[points[vertex]] != 0) vertices.push_back(vertex);
+  }
+  return vertices;
+}
+
+// Anchors are numbers of the mesh as it was written: nothing if it is numbered otherwise now.
+std::optional<Damage> locate_damage(const RecordedMark& recorded, const Readable& readable,
+                                    const Scheme& scheme, std::span<const Word> words,
+                                    std::span<const Reading> readings, std::uint32_t units_found) {
+  const bool same_size = readable.file.mesh().positions.size() == recorded.points &&
+                         readable.file.face_count() == recorded.faces;
+  if (!recorded.units || !same_size) return std::nullopt;
+  const std::vector<Carrier> intact = carriers_read(*recorded.units, words, readings);
+  if (2 * intact.size() < units_found) return std::nullopt;
+  const std::vector<std::uint32_t> damaged = anchors_not_among(*recorded.units, intact);
+  Damage damage;
+  damage.units_expected = static_cast<std::uint32_t>(recorded.units->size());
+  damage.units_damaged = static_cast<std::uint32_t>(damaged.size());
+  if (!damaged.empty()) {
+    damage.vertices = vertices_of(readable.file, scheme.points_of(readable.surface(), damaged));
+  }
+  return damage;
+}
+
+}  // namespace
+
+std::string_view name_of(FileVerdict verdict) {
+  switch (verdict) {
+    case FileVerdict::Intact:
+      return "intact";
+    case FileVerdict::Altered:
+      return "altered, mark present";
+    case FileVerdict::Missing:
+      return "missing";
+    case FileVerdict::Lost:
+      return "mark lost";
+    case FileVerdict::Damaged:
+      return "damaged";
+    case FileVerdict::NotMarked:
+      return "not marked";
+  }
+  return "";
+}
+
+Verification verify_file(const RecordedMark& recorded, const Key& key, bool locate) {
+  Verification result;
+  if (recorded.status != Status::Marked) {
+    result.detail = "the record says \"" + std::string(name_of(recorded.status)) + "\"";
+    return result;
+  }
+  if (!std::filesystem::exists(recorded.out)) {
+    result.verdict = FileVerdict::Missing;
+    result.detail = recorded.out.string() + ": no such file";
+    return result;
+  }
+  try {
+    const Readable readable(recorded.out);
+    const WordCode code(key, recorded.options.format);
+    const auto scheme = make_scheme(recorded.options.scheme, code, recorded.options.scheme_options);
+    const Extraction found =
+        extract(readable.surface(), *scheme, code, recorded.options.scheme_options.doubtful_parts);
+    const std::vector<Word> words =
+        recorded.fill ? code.fill_words(recorded.parts) : code.words_of(recorded.message);
+    result.units_found = count_words(code, words, found.readings);
+    const bool carries = recorded.fill ? 2 * result.units_found > recorded.units_embedded
+                                       : found.message == recorded.message;
+    const bool right_key = recorded.key_fingerprint == key.fingerprint();
+    if (locate && right_key) {
+      result.damage =
+          locate_damage(recorded, readable, *scheme, words, found.readings, result.units_found);
+    }
+    if (!carries) {
+      result.verdict = FileVerdict::Lost;
+      result.detail = right_key ? "the message is not in the file"
+                                : "marked under another key, " + recorded.key_fingerprint;
+    } else if (content_hash(readable.file.bytes()) != recorded.output_hash) {
+      result.verdict = FileVerdict::Altered;
+      result.detail = "the bytes differ from those written";
+    } else {
+      result.verdict = FileVerdict::Intact;
+    }
+  } catch (const Error& error) {
+    result.verdict = FileVerdict::Damaged;
+    result.detail = error.what();
+  }
+  return result;
+}
+
+}  // namespace triglyph

@@ -1,0 +1,44 @@
+// Is the file of a record there, unchanged, and does it carry its message? Where not, which of its
+// units are damaged: the mark locates what was done to the mesh.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "manifests/record.h"
+
+namespace triglyph {
+
+enum class FileVerdict {
+  Intact,     // byte for byte what was written, and it carries its message
+  Altered,    // other bytes, but it still carries its message
+  Missing,    // no file
+  Lost,       // readable, but the message is not there
+  Damaged,    // not readable as a mesh
+  NotMarked,  // the record is of a mesh that was not marked
+};
+[[nodiscard]] std::string_view name_of(FileVerdict verdict);
+
+// Units of the record that no longer read what was written there.
+struct Damage {
+  std::uint32_t units_expected = 0;
+  std::uint32_t units_damaged = 0;
+  std::vector<std::uint64_t> vertices;  // of the file, from 0, on which these depend; ascending
+};
+
+struct Verification {
+  FileVerdict verdict = FileVerdict::NotMarked;
+  std::uint32_t units_found = 0;  // units that carry a word of the mark, wherever they stand
+  std::string detail;             // why, in one line; empty if intact
+  std::optional<Damage> damage;   // if asked for, and the record and the file's order allow it
+};
+
+// `locate`: also work out the damage. Does not throw: what is wrong with the file is the verdict.
+// O(file) and the scheme's reading.
+[[nodiscard]] Verification verify_file(const RecordedMark& recorded, const Key& key,
+                                       bool locate = false);
+
+}  // namespace triglyph
