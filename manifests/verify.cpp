@@ -46,9 +46,10 @@ std::vector<std::uint64_t> vertices_of(const MeshFile& file, const PointLists& l
 }
 
 // Anchors are numbers of the mesh as it was written: nothing if it is numbered otherwise now.
-std::optional<Damage> locate_damage(const RecordedMark& recorded, const Readable& readable,
-                                    const Scheme& scheme, std::span<const Word> words,
-                                    std::span<const Reading> readings, std::uint32_t units_found) {
+std::optional<Damage> damage_of(const RecordedMark& recorded, const Readable& readable,
+                                const Scheme& scheme, std::span<const Word> words,
+                                std::span<const Reading> readings, std::uint32_t units_found,
+                                bool locate) {
   const bool same_size = readable.file.mesh().positions.size() == recorded.points &&
                          readable.file.face_count() == recorded.faces;
   if (!recorded.units || !same_size) return std::nullopt;
@@ -58,7 +59,7 @@ std::optional<Damage> locate_damage(const RecordedMark& recorded, const Readable
   Damage damage;
   damage.units_expected = static_cast<std::uint32_t>(recorded.units->size());
   damage.units_damaged = static_cast<std::uint32_t>(damaged.size());
-  if (!damaged.empty()) {
+  if (locate && !damaged.empty()) {
     damage.vertices = vertices_of(readable.file, scheme.points_of(readable.surface(), damaged));
   }
   return damage;
@@ -107,9 +108,12 @@ Verification verify_file(const RecordedMark& recorded, const Key& key, bool loca
     const bool carries = recorded.fill ? 2 * result.units_found > recorded.units_embedded
                                        : found.message == recorded.message;
     const bool right_key = recorded.key_fingerprint == key.fingerprint();
-    if (locate && right_key) {
+    if (right_key) {
       result.damage =
-          locate_damage(recorded, readable, *scheme, words, found.readings, result.units_found);
+          damage_of(recorded, readable, *scheme, words, found.readings, result.units_found, locate);
+    }
+    if (result.damage) {
+      result.units_found = result.damage->units_expected - result.damage->units_damaged;
     }
     if (!carries) {
       result.verdict = FileVerdict::Lost;

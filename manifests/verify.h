@@ -26,18 +26,21 @@ enum class FileVerdict {
 struct Damage {
   std::uint32_t units_expected = 0;
   std::uint32_t units_damaged = 0;
-  std::vector<std::uint64_t> vertices;  // of the file, from 0, on which these depend; ascending
+  // Of the file, from 0, on which these depend, ascending; empty unless asked for.
+  std::vector<std::uint64_t> vertices;
 };
 
 struct Verification {
   FileVerdict verdict = FileVerdict::NotMarked;
-  std::uint32_t units_found = 0;  // units that carry a word of the mark, wherever they stand
-  std::string detail;             // why, in one line; empty if intact
-  std::optional<Damage> damage;   // if asked for, and the record and the file's order allow it
+  // Units that carry what was written there; where that cannot be told, units that carry any word
+  // of the mark.
+  std::uint32_t units_found = 0;
+  std::string detail;            // why, in one line; empty if intact
+  std::optional<Damage> damage;  // if the record names the units and the file still numbers them
 };
 
-// `locate`: also work out the damage. Does not throw: what is wrong with the file is the verdict.
-// O(file) and the scheme's reading.
+// `locate`: also name the vertices of damaged units. Does not throw: what is wrong with the file is
+// the verdict. O(file) and the scheme's reading.
 [[nodiscard]] Verification verify_file(const RecordedMark& recorded, const Key& key,
                                        bool locate = false);
 

@@ -90,6 +90,11 @@ TEST_F(Cli, MarksExtractsAndVerifies) {
   EXPECT_EQ(run("extract a.obj --key-file k.key").code, 3);
 
   EXPECT_EQ(run("verify r.jsonl --key-file k.key").code, 0);
+  const Result vague = run("verify r.jsonl --key-file k.key --detail");
+  EXPECT_NE(vague.out.find("damage cannot be located"), std::string::npos);
+  EXPECT_EQ(run("mark a.obj --out o --key-file k.key --records d.jsonl --detail").code, 0);
+  const Result detail = run("verify d.jsonl --key-file k.key --detail");
+  EXPECT_NE(detail.out.find("  0 of "), std::string::npos) << detail.out;
   fs::remove(folder_ / "o/a.obj");
   const Result missing = run("verify r.jsonl --key-file k.key --json");
   EXPECT_EQ(missing.code, 3);

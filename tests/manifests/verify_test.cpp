@@ -120,7 +120,6 @@ TEST_P(EverySchemesDamage, IsLocated) {
   EXPECT_EQ(before.damage->units_expected, mark.units_embedded);
   EXPECT_EQ(before.damage->units_damaged, 0U);
   EXPECT_TRUE(before.damage->vertices.empty());
-  EXPECT_FALSE(verify_file(mark, Key::trial()).damage);
   EXPECT_FALSE(verify_file(mark, Key::generate(), true).damage);
 
   const std::vector<std::uint64_t> dented = marked.dent();
@@ -130,6 +129,10 @@ TEST_P(EverySchemesDamage, IsLocated) {
   ASSERT_TRUE(after.damage);
   EXPECT_GT(after.damage->units_damaged, 0U);
   EXPECT_LT(after.damage->units_damaged, after.damage->units_expected / 4);
+  EXPECT_EQ(after.units_found, after.damage->units_expected - after.damage->units_damaged);
+  const Verification brief = verify_file(mark, Key::trial());
+  EXPECT_EQ(brief.units_found, after.units_found);
+  EXPECT_TRUE(brief.damage->vertices.empty());
   const auto& named = after.damage->vertices;
   EXPECT_TRUE(std::is_sorted(named.begin(), named.end()));
   std::vector<std::uint64_t> both;
