@@ -22,7 +22,7 @@ constexpr double kMargin = 0.02;  // of the radius: what a shift of the centre m
 constexpr double kVolumeStep =
     1.3;                            // cells of the volume over those of the area, as their noise is
 constexpr double kFlatCap = 0.5;    // of the radius: so far the cap moves as one
-constexpr double kMaxShift = 0.25;   // of the radius, of the centre
+constexpr double kMaxShift = 0.25;  // of the radius, of the centre
 constexpr double kMaxMove = 0.22;   // of the radius, of a point
 constexpr int kSamples = 17;        // of the invariants along a centre's way
 constexpr double kSharpness = 4.5;  // a cell's border lies three standard deviations of noise away
@@ -287,31 +287,15 @@ IieScheme::IieScheme(const WordCode& code, const SchemeOptions& options)
   }
 }
 
-std::optional<IieScheme::Ball> IieScheme::ball_at(const Ground& ground,
-                                                  std::uint32_t anchor) const {
+// Points reached from the anchor whose triangles all lie well within the ball, ascending.
+std::vector<std::uint32_t> IieScheme::cap_of(const Ground& ground, std::uint32_t anchor,
+                                             const Vec3& centre) {
   const Surface& surface = ground.surface;
-  const auto centre_points = points_within(surface.halfedges, anchor, options_.centre_rings);
-  if (!centre_points) return std::nullopt;
-  Ball ball;
-  ball.radius = ground.radius;
-  ball.centre = ground.mean_of(*centre_points);
-  for (const std::uint32_t point : *centre_points) ball.normal += fan_area(surface, point);
-  const double length = ball.normal.norm();
-  if (!(length > 0)) return std::nullopt;
-  ball.normal /= length;
-  auto near = ground.index.triangles_in_ball(ball.centre, ground.radius * (1 + kMargin),
-                                             ground.most_triangles);
-  if (!near) return std::nullopt;
-  ball.near = std::move(*near);
-  for (const std::uint32_t triangle : ball.near) {
-    if (ground.unfit[triangle] != 0) return std::nullopt;
-  }
-
-  // the cap: points reached from the anchor whose triangles lie well within the ball
   const double inside = ground.radius * (1 - kMargin);
   const auto lies_inside = [&](std::uint32_t point) {
-    return (surface.mesh.positions[point] - ball.centre).sqrnorm() < inside * inside;
+    return (surface.mesh.positions[point] - centre).sqrnorm() < inside * inside;
   };
+  std::vector<std::uint32_t> cap;
   std::unordered_set<std::uint32_t> seen{anchor};
   std::vector<std::uint32_t> queue{anchor};
   for (std::size_t next = 0; next < queue.size(); ++next) {
@@ -319,23 +303,24 @@ std::optional<IieScheme::Ball> IieScheme::ball_at(const Ground& ground,
     const bool closed = visit_ring(surface.halfedges, queue[next],
                                    [&](std::uint32_t other) { ring.push_back(other); });
     if (!closed || !std::all_of(ring.begin(), ring.end(), lies_inside)) continue;
-    ball.cap.push_back(queue[next]);
+    cap.push_back(queue[next]);
     for (const std::uint32_t other : ring) {
       if (seen.insert(other).second) queue.push_back(other);
     }
   }
-  std::sort(ball.cap.begin(), ball.cap.end());
-  if (!std::includes(ball.cap.begin(), ball.cap.end(), centre_points->begin(),
-                     centre_points->end())) {
-    return std::nullopt;
-  }
+  std::sort(cap.begin(), cap.end());
+  return cap;
+}
 
+// How far each point of the cap follows a move, and what that does to centre and volume.
+void IieScheme::weigh_cap(const Ground& ground, std::span<const std::uint32_t> centre_points,
+                          Ball& ball) {
   const double volume = 4.0 / 3.0 * std::numbers::pi * std::pow(ground.read_radius, 3);
   for (const std::uint32_t point : ball.cap) {
-    const double distance = (surface.mesh.positions[point] - ball.centre).norm();
+    const double distance = (ground.surface.mesh.positions[point] - ball.centre).norm();
     const double profile = cap_profile(distance, ground.radius);
-    const bool is_centres = std::binary_search(centre_points->begin(), centre_points->end(), point);
-    const double lift = profile * dot(fan_area(surface, point), ball.normal) / (3 * volume);
+    const bool is_centres = std::binary_search(centre_points.begin(), centre_points.end(), point);
+    const double lift = profile * dot(fan_area(ground.surface, point), ball.normal) / (3 * volume);
     ball.profile.push_back(profile);
     ball.is_centres.push_back(is_centres ? 1 : 0);
     ball.lift_all += lift;
@@ -343,11 +328,39 @@ std::optional<IieScheme::Ball> IieScheme::ball_at(const Ground& ground,
     double& most = is_centres ? ball.most_inner : ball.most_outer;
     most = std::max(most, profile);
     if (is_centres) {
-      ball.centre_gain += profile / static_cast<double>(centre_points->size());
+      ball.centre_gain += profile / static_cast<double>(centre_points.size());
     } else {
       ball.lift_outer += lift;
     }
   }
+}
+
+std::optional<IieScheme::Ball> IieScheme::ball_at(const Ground& ground,
+                                                  std::uint32_t anchor) const {
+  const auto centre_points = points_within(ground.surface.halfedges, anchor, options_.centre_rings);
+  if (!centre_points) return std::nullopt;
+  Ball ball;
+  ball.radius = ground.radius;
+  ball.centre = ground.mean_of(*centre_points);
+  for (const std::uint32_t point : *centre_points) ball.normal += fan_area(ground.surface, point);
+  const double length = ball.normal.norm();
+  if (!(length > 0)) return std::nullopt;
+  ball.normal /= length;
+
+  auto near = ground.index.triangles_in_ball(ball.centre, ground.radius * (1 + kMargin),
+                                             ground.most_triangles);
+  if (!near) return std::nullopt;
+  ball.near = std::move(*near);
+  const bool at_boundary = std::any_of(ball.near.begin(), ball.near.end(),
+                                       [&](std::uint32_t t) { return ground.unfit[t] != 0; });
+  if (at_boundary) return std::nullopt;
+
+  ball.cap = cap_of(ground, anchor, ball.centre);
+  if (!std::includes(ball.cap.begin(), ball.cap.end(), centre_points->begin(),
+                     centre_points->end())) {
+    return std::nullopt;
+  }
+  weigh_cap(ground, *centre_points, ball);
   if (!(ball.lift_outer > 0 && ball.lift_all > 0)) return std::nullopt;  // too crumpled
   return ball;
 }

@@ -89,6 +89,10 @@ class IieScheme final : public Scheme {
                                    std::span<const Placement> placements,
                                    std::span<const Word> words) const;
   [[nodiscard]] std::optional<Ball> ball_at(const Ground& ground, std::uint32_t anchor) const;
+  [[nodiscard]] static std::vector<std::uint32_t> cap_of(const Ground& ground, std::uint32_t anchor,
+                                                         const Vec3& centre);
+  static void weigh_cap(const Ground& ground, std::span<const std::uint32_t> centre_points,
+                        Ball& ball);
   [[nodiscard]] std::optional<double> centre_shift(const Ball& ball, double area) const;
   [[nodiscard]] static Moves moves_to(const Ball& ball, double shift, double volume, double wanted);
   [[nodiscard]] std::optional<Plan> plan(const Ball& ball, const Word& word) const;
