@@ -34,8 +34,8 @@ constexpr std::uint32_t kBidsPerWord = 6;  // on average; more bids save few sea
 // An auction costs about as much as searches that visit each word some dozen times.
 constexpr std::size_t kPatience = 20;
 constexpr std::size_t kAuctionBidsPerWord = 40;  // a round ends sooner as a rule
-constexpr double kFirstStep = 0.25;              // of the widest gap between a word's candidates
-constexpr double kLastStep = 1e-5;
+constexpr double kFirstStep = 0.1;               // of the widest gap between a word's candidates
+constexpr double kLastStep = 1e-4;
 constexpr double kStepRatio = 6;
 
 // The word takes its best units at the value of the best one it does not get, and raises their

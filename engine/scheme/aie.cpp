@@ -6,6 +6,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
+#include "engine/scheme/cost_rows.h"
 
 namespace triglyph {
 namespace {
@@ -166,30 +167,26 @@ UnitSet AieScheme::find_units(const Surface& surface) const {
 CostMatrix AieScheme::costs(const Surface& surface, const UnitSet& units,
                             std::span<const std::uint32_t> chosen,
                             std::span<const Word> words) const {
-  CostMatrix matrix{
-      static_cast<std::uint32_t>(chosen.size()), static_cast<std::uint32_t>(words.size()), {}};
-  matrix.values.assign(chosen.size() * words.size(), kInfeasible);
   std::vector<GroupBits> bits_of;
   for (const Word& word : words) bits_of.push_back(deal_out(word));
-  const auto fill_row = [&](std::size_t row) {
+  return fill_cost_rows(chosen.size(), words.size(), [&](std::size_t row, std::span<float> costs) {
     const std::optional<Site> site = site_at(surface, units.anchors[chosen[row]]);
     if (!site) return;
     // a group has few values and many words share them
     std::array<std::vector<float>, 4> known;
-    for (std::size_t k = 0; k < 4; ++k) known[k].assign(std::size_t{1} << channels_[k].bits(), -1);
-    for (std::size_t column = 0; column < words.size(); ++column) {
+    for (std::size_t k = 0; k < 4; ++k) {
+      known[k].assign(std::size_t{1} << channels_[k].bits(), -1);
+    }
+    for (std::size_t word = 0; word < costs.size(); ++word) {
       std::array<float, 4> group_costs{};
       for (std::size_t k = 0; k < 4; ++k) {
-        float& cost = known[k][bits_of[column][k]];
-        if (cost < 0) cost = group_cost(surface, *site, k, bits_of[column][k]);
+        float& cost = known[k][bits_of[word][k]];
+        if (cost < 0) cost = group_cost(surface, *site, k, bits_of[word][k]);
         group_costs[k] = cost;
       }
-      matrix.values[column * chosen.size() + row] =
-          combine(group_costs, site->around.all_groups().size());
+      costs[word] = combine(group_costs, site->around.all_groups().size());
     }
-  };
-  parallel_for(chosen.size(), fill_row, kUnitsPerBlock);
-  return matrix;
+  });
 }
 
 Embedding AieScheme::embed(const Surface& surface, const UnitSet& units,

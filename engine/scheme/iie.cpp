@@ -13,6 +13,7 @@
 #include "engine/base/random.h"
 #include "engine/mesh/edge_length.h"
 #include "engine/mesh/spatial_index.h"
+#include "engine/scheme/cost_rows.h"
 #include "engine/scheme/ring_signature.h"
 
 namespace triglyph {
@@ -475,22 +476,17 @@ CostMatrix IieScheme::costs(const Surface& surface, const UnitSet& units,
                             std::span<const std::uint32_t> chosen,
                             std::span<const Word> words) const {
   const Ground ground(surface, options_, site_seed_);
-  CostMatrix matrix{
-      static_cast<std::uint32_t>(chosen.size()), static_cast<std::uint32_t>(words.size()), {}};
-  matrix.values.assign(chosen.size() * words.size(), kInfeasible);
-  const auto fill_row = [&](std::size_t row) {
+  const bool by_farthest = options_.cost == CostFunction::Displacement;
+  return fill_cost_rows(chosen.size(), words.size(), [&](std::size_t row, std::span<float> costs) {
     std::optional<Ball> ball = ball_at(ground, units.anchors[chosen[row]]);
     if (!ball || !ground.sample(*ball)) return;
-    for (std::size_t column = 0; column < words.size(); ++column) {
-      const std::optional<Plan> planned = plan(*ball, words[column]);
+    for (std::size_t word = 0; word < costs.size(); ++word) {
+      const std::optional<Plan> planned = plan(*ball, words[word]);
       if (!planned) continue;
-      const bool by_farthest = options_.cost == CostFunction::Displacement;
-      matrix.values[column * chosen.size() + row] = static_cast<float>(
-          by_farthest ? ball->farthest(planned->moves) : ball->rms(planned->moves));
+      costs[word] = static_cast<float>(by_farthest ? ball->farthest(planned->moves)
+                                                   : ball->rms(planned->moves));
     }
-  };
-  parallel_for(chosen.size(), fill_row, kUnitsPerTask);
-  return matrix;
+  });
 }
 
 Embedding IieScheme::embed(const Surface& surface, const UnitSet& units,

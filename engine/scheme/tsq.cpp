@@ -5,6 +5,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
+#include "engine/scheme/cost_rows.h"
 
 namespace triglyph {
 namespace {
@@ -166,6 +167,20 @@ class TsqScheme::ApexMoves {
     return apex ? static_cast<float>(apex->move) : kInfeasible;
   }
 
+  // The same for each of these values; those of few bits are worked out once.
+  [[nodiscard]] std::vector<float> moves(std::span<const std::uint32_t> values) const {
+    std::vector<float> known;
+    if (std::size_t{1} << channel_.bits() <= values.size()) {
+      known.resize(std::size_t{1} << channel_.bits());
+      for (std::uint32_t bits = 0; bits < known.size(); ++bits) known[bits] = move(bits);
+    }
+    std::vector<float> moves(values.size());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      moves[i] = known.empty() ? move(values[i]) : known[values[i]];
+    }
+    return moves;
+  }
+
  private:
   const FlatTriangle& triangle_;
   const Channel& channel_;
@@ -279,28 +294,22 @@ float TsqScheme::combine(const Marked& marked, float s, float d1, float d2) cons
 CostMatrix TsqScheme::costs(const Surface& surface, const UnitSet& units,
                             std::span<const std::uint32_t> chosen,
                             std::span<const Word> words) const {
-  CostMatrix matrix{
-      static_cast<std::uint32_t>(chosen.size()), static_cast<std::uint32_t>(words.size()), {}};
-  matrix.values.resize(chosen.size() * words.size());
-  const auto fill_row = [&](std::size_t row) {
-    const auto cost = [&](std::size_t column) -> float& {
-      return matrix.values[column * chosen.size() + row];
-    };
-    const std::optional<Marked> marked = embed_marker(surface.mesh, units.moved[chosen[row]]);
-    if (!marked) {
-      for (std::size_t column = 0; column < words.size(); ++column) cost(column) = kInfeasible;
-      return;
+  std::array<std::vector<std::uint32_t>, 3> values;  // of S, D1 and D2 in every word
+  for (const Word& word : words) {
+    const auto bits = outer_bits(word);
+    for (std::size_t i = 0; i < 3; ++i) values[i].push_back(bits[i]);
+  }
+  return fill_cost_rows(chosen.size(), words.size(), [&](std::size_t row, std::span<float> costs) {
+    const auto marked = embed_marker(surface.mesh, units.moved[chosen[row]]);
+    if (!marked) return;
+    std::array<std::vector<float>, 3> moves;
+    for (std::size_t i = 0; i < 3; ++i) {
+      moves[i] = ApexMoves(marked->outer[i], outer_channels_[i]).moves(values[i]);
     }
-    const ApexMoves s(marked->outer[0], outer_channels_[0]);
-    const ApexMoves d1(marked->outer[1], outer_channels_[1]);
-    const ApexMoves d2(marked->outer[2], outer_channels_[2]);
-    for (std::size_t column = 0; column < words.size(); ++column) {
-      const auto bits = outer_bits(words[column]);
-      cost(column) = combine(*marked, s.move(bits[0]), d1.move(bits[1]), d2.move(bits[2]));
+    for (std::size_t word = 0; word < costs.size(); ++word) {
+      costs[word] = combine(*marked, moves[0][word], moves[1][word], moves[2][word]);
     }
-  };
-  parallel_for(chosen.size(), fill_row, kUnitsPerBlock);
-  return matrix;
+  });
 }
 
 Embedding TsqScheme::embed(const Surface& surface, const UnitSet& units,
