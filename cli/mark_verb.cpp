@@ -31,6 +31,7 @@ struct MarkArguments {
   std::string cost = "displacement";
   std::uint32_t redundancy = MarkOptions{}.redundancy;
   std::optional<double> max_move_percent;
+  double drop_dearest_percent = 0;
   std::filesystem::path records;
   bool json = false;
   bool detail = false;
@@ -51,6 +52,7 @@ struct MarkArguments {
     settings.cost = cost_function(cost);
     settings.redundancy = redundancy;
     settings.detail = detail;
+    settings.drop_dearest = drop_dearest_percent / 100;
     if (max_move_percent) settings.max_move_rel_diag = *max_move_percent / 100;
     // fails early on a message that cannot be, before any mesh is opened
     if (!fill) (void)WordCode(Key::trial(), settings.resolved().format).words_of(settings.message);
@@ -186,7 +188,7 @@ void add_mark_verb(CLI::App& app, Action& action) {
       ->check(CLI::IsMember({"sequential", "bottleneck", "sum"}))
       ->capture_default_str();
   verb->add_option("--cost", arguments->cost, "Local change that the assignment minimises")
-      ->check(CLI::IsMember({"displacement", "rms"}))
+      ->check(CLI::IsMember(strings(cost_names())))
       ->capture_default_str();
   verb->add_option("--redundancy", arguments->redundancy,
                    "Units wanted for each part; 0: as many as there are")
@@ -195,6 +197,11 @@ void add_mark_verb(CLI::App& app, Action& action) {
                    "Farthest move of a point in percent of the diagonal that a repeat is worth; 0: "
                    "any [the scheme's]")
       ->check(CLI::Range(0.0, 100.0));
+  verb->add_option("--drop-dearest", arguments->drop_dearest_percent,
+                   "Percent of the candidates to leave out, those dear under every word: less "
+                   "capacity, less to be seen")
+      ->check(CLI::Range(0.0, 99.9))
+      ->capture_default_str();
   verb->add_option("--records", arguments->records, "Write one JSON record a mesh to this file")
       ->type_name("FILE");
   verb->add_flag("--json", arguments->json, "Print the records instead of a table");

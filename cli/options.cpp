@@ -27,7 +27,7 @@ void SchemeArguments::add_to(CLI::App& verb) {
   verb.add_option("--marker-bits", marker_bits_, "Bits of the marker, m [the scheme's]")
       ->check(CLI::Range(0, 16));
   verb.add_option("--subscript-bits", subscript_bits_,
-                  "Bits of the subscript, s; with --fill the most it may use [the scheme's]")
+                  "Bits of the subscript, s; with --fill as few as needed [the scheme's]")
       ->check(CLI::Range(1, 16));
   verb.add_option("--part-bits", part_bits_, "Bits of the message in a unit, w [the scheme's]")
       ->check(CLI::Range(2, 32));

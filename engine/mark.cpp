@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <bit>
+#include <chrono>
 #include <numeric>
 
 #include "engine/assign_words.h"
 #include "engine/base/error.h"
+#include "engine/capacity.h"
 #include "engine/mesh/edge_length.h"
 #include "engine/metric/hausdorff.h"
 #include "engine/settle.h"
@@ -50,6 +52,20 @@ std::uint32_t count_parts(const Marking& marking) {
   for (const Carrier& carrier : marking.carriers) carried[carrier.word] = 1;
   return static_cast<std::uint32_t>(std::count(carried.begin(), carried.end(), 1));
 }
+
+class Stopwatch {
+ public:
+  // Seconds since it was made or read last.
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const double seconds = std::chrono::duration<double>(now - start_).count();
+    start_ = now;
+    return seconds;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
 
 }  // namespace
 
@@ -100,14 +116,18 @@ Marking mark(const Surface& surface, std::span<const std::uint8_t> message, cons
   };
 
   // step 1: which units there are
-  const UnitSet units = scheme_for(first_code)->find_units(surface);
-  const Conflicts conflicts(units, surface.mesh.positions.size(), options.conflict_rule);
-  const std::vector<std::uint32_t> valid = choose_layout(conflicts, options.layout);
+  Stopwatch watch;
+  const std::vector<Word> words =
+      fill ? first_code.fill_words(std::min(kProbeWords, first_code.capacity())) : marking.words;
+  const Capacity capacity = find_capacity(surface, *scheme_for(first_code), words, options);
+  const UnitSet& units = capacity.units;
+  const std::vector<std::uint32_t>& valid = capacity.valid;
+  marking.layout_seconds = watch.lap();
   marking.candidates = static_cast<std::uint32_t>(units.size());
   marking.units_valid = static_cast<std::uint32_t>(valid.size());
-  marking.units_bound = layout_bound(conflicts);
+  marking.units_bound = capacity.bound;
 
-  if (fill && !valid.empty()) {
+  if (fill && !valid.empty() && !options.keeps_subscript_bits) {
     marking.format.subscript_bits = fill_subscript_bits(valid.size(), options.format);
   }
   const WordCode code(key, marking.format);
@@ -126,7 +146,9 @@ Marking mark(const Surface& surface, std::span<const std::uint8_t> message, cons
   WordAssigner assigner(surface, *scheme, units, valid, marking.words, options, limit);
   const bool once = fill || options.assign == AssignMethod::Sequential;
   for (int round = 0; round < (once ? 1 : kMaxRounds); ++round) {
+    watch.lap();
     const WordPlan plan = assigner.plan(fill ? 0 : options.redundancy);
+    marking.assign_seconds += watch.lap();
     marking.cost_max = plan.cost_max;
     marking.cost_sum = plan.cost_sum;
     marking.units_assigned = static_cast<std::uint32_t>(plan.placements.size());

@@ -39,6 +39,12 @@ struct MarkOptions {
   // only if its part has fewer than kMinRedundancy others, and never if it is ten times as far.
   // 0: no limit. Not for sequential or fill.
   double max_move_rel_diag = 0.001;
+  // This share of the candidates, 0 up to 1, is left out: those whose cheapest word costs most.
+  // Less capacity, and a less visible mark, since a unit that is dear under every word is a floor
+  // of the bottleneck that no assignment gets below (TSQ: the marker's own cost).
+  double drop_dearest = 0;
+  // Fill uses format.subscript_bits as they are, instead of as few as tell the units apart.
+  bool keeps_subscript_bits = false;
 };
 
 // The options with which a scheme marks a message or fills a mesh unless the user says otherwise.
@@ -73,6 +79,8 @@ struct Marking {
   std::uint32_t units_dropped = 0;   // taken back: rounding or a flipped face spoiled them
   double cost_max = 0;               // of the assignment, model units
   double cost_sum = 0;
+  double layout_seconds = 0;  // step 1: candidates, conflicts, layout
+  double assign_seconds = 0;  // step 2: costs and assignment, all rounds
 };
 
 // The nearest point that the output can hold.

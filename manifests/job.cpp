@@ -20,6 +20,8 @@ MarkOptions JobSettings::resolved() const {
   options.assign = assign;
   options.redundancy = redundancy;
   options.max_move_rel_diag = max_move_rel_diag.value_or(options.max_move_rel_diag);
+  options.drop_dearest = drop_dearest;
+  options.keeps_subscript_bits = subscript_bits.has_value();
   return options;
 }
 

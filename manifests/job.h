@@ -16,7 +16,7 @@ struct JobSettings {
   bool fill = false;  // the paper's experiment: a random message as long as the capacity
   std::string scheme = "tsq";
   std::optional<int> marker_bits;
-  std::optional<int> subscript_bits;
+  std::optional<int> subscript_bits;  // fill: as many; else as few as tell the units apart
   std::optional<int> part_bits;
   std::optional<double> step;
   AieGroups groups = AieGroups::One;
@@ -30,6 +30,7 @@ struct JobSettings {
   AssignMethod assign = MarkOptions{}.assign;
   std::uint32_t redundancy = MarkOptions{}.redundancy;
   std::optional<double> max_move_rel_diag;
+  double drop_dearest = 0;
   bool detail = false;  // write down every unit, so that verify can say which are damaged
 
   // With iie, whose use that is, always.

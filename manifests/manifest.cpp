@@ -71,6 +71,8 @@ bool apply(const std::string& key, const Json& value, JobSettings& settings) {
     settings.cost = cost_function(value.get<std::string>());
   } else if (key == "redundancy") {
     settings.redundancy = value.get<std::uint32_t>();
+  } else if (key == "drop_dearest") {
+    settings.drop_dearest = value.get<double>();
   } else if (key == "max_move") {
     settings.max_move_rel_diag = value.get<double>();
   } else if (key == "marker_bits") {

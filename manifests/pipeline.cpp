@@ -59,6 +59,8 @@ void describe(const Marking& marking, Record& record) {
   record.units_assigned = marking.units_assigned;
   record.cost_max = marking.cost_max;
   record.cost_sum = marking.cost_sum;
+  record.times.layout = marking.layout_seconds;
+  record.times.assign = marking.assign_seconds;
 }
 
 }  // namespace

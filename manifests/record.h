@@ -36,6 +36,7 @@ enum class Status {
 
 struct StageTimes {
   double load = 0, mark = 0, write = 0, read_back = 0, measure = 0;  // seconds
+  double layout = 0, assign = 0;                                     // of mark: steps 1 and 2
 };
 
 struct Record {

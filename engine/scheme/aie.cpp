@@ -7,6 +7,7 @@
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
 #include "engine/scheme/cost_rows.h"
+#include "engine/scheme/local_cost.h"
 
 namespace triglyph {
 namespace {
@@ -115,28 +116,16 @@ std::optional<AieScheme::Site> AieScheme::site_at(const Surface& surface,
   return Site{*around, norm, kMaxMove * norm.greatest_deviation()};
 }
 
-float AieScheme::group_cost(const Surface& surface, const Site& site, std::size_t group,
-                            std::uint32_t bits) const {
-  double farthest = 0;
-  double sum_of_squares = 0;
+float AieScheme::group_cost(const Mesh& mesh, const LocalCost& local, const Site& site,
+                            std::size_t group, std::uint32_t bits) const {
+  std::array<Move, EdgeNeighbourhood::kMaxPoints> moves;
+  std::size_t count = 0;
   for (const std::uint32_t point : site.around.group(group)) {
-    const Vec3& from = surface.mesh.positions[point];
-    const std::optional<Vec3> to = place(site, group, from, bits);
+    const std::optional<Vec3> to = place(site, group, mesh.positions[point], bits);
     if (!to) return kInfeasible;
-    const double squared = (*to - from).sqrnorm();
-    farthest = std::max(farthest, squared);
-    sum_of_squares += squared;
+    moves[count++] = {point, *to};
   }
-  return static_cast<float>(options_.cost == CostFunction::Displacement ? std::sqrt(farthest)
-                                                                        : sum_of_squares);
-}
-
-float AieScheme::combine(const std::array<float, 4>& group_costs, std::size_t moved) const {
-  if (options_.cost == CostFunction::Displacement) {
-    return *std::max_element(group_costs.begin(), group_costs.end());
-  }
-  const float sum = group_costs[0] + group_costs[1] + group_costs[2] + group_costs[3];
-  return std::sqrt(sum / static_cast<float>(moved));
+  return local.of_part(std::span<const Move>(moves.data(), count));
 }
 
 UnitSet AieScheme::find_units(const Surface& surface) const {
@@ -169,6 +158,7 @@ CostMatrix AieScheme::costs(const Surface& surface, const UnitSet& units,
                             std::span<const Word> words) const {
   std::vector<GroupBits> bits_of;
   for (const Word& word : words) bits_of.push_back(deal_out(word));
+  const LocalCost local(surface, options_.cost);
   return fill_cost_rows(chosen.size(), words.size(), [&](std::size_t row, std::span<float> costs) {
     const std::optional<Site> site = site_at(surface, units.anchors[chosen[row]]);
     if (!site) return;
@@ -181,10 +171,10 @@ CostMatrix AieScheme::costs(const Surface& surface, const UnitSet& units,
       std::array<float, 4> group_costs{};
       for (std::size_t k = 0; k < 4; ++k) {
         float& cost = known[k][bits_of[word][k]];
-        if (cost < 0) cost = group_cost(surface, *site, k, bits_of[word][k]);
+        if (cost < 0) cost = group_cost(surface.mesh, local, *site, k, bits_of[word][k]);
         group_costs[k] = cost;
       }
-      costs[word] = combine(group_costs, site->around.all_groups().size());
+      costs[word] = local.combine(group_costs, site->around.all_groups().size());
     }
   });
 }

@@ -32,6 +32,8 @@
 
 namespace triglyph {
 
+class LocalCost;
+
 class AieScheme final : public Scheme {
  public:
   // Throws Error Usage if m + s + w > 32 or the step is out of range.
@@ -95,9 +97,8 @@ class AieScheme final : public Scheme {
   [[nodiscard]] std::optional<Site> site_at(const Surface& surface, std::uint32_t anchor) const;
   [[nodiscard]] std::optional<Vec3> place(const Site& site, std::size_t group, const Vec3& point,
                                           std::uint32_t bits) const;
-  [[nodiscard]] float group_cost(const Surface& surface, const Site& site, std::size_t group,
-                                 std::uint32_t bits) const;
-  [[nodiscard]] float combine(const std::array<float, 4>& group_costs, std::size_t moved) const;
+  [[nodiscard]] float group_cost(const Mesh& mesh, const LocalCost& local, const Site& site,
+                                 std::size_t group, std::uint32_t bits) const;
   [[nodiscard]] std::optional<GroupReading> read_group(const Mesh& mesh, const AffineNorm& norm,
                                                        const EdgeNeighbourhood& around,
                                                        std::size_t group) const;

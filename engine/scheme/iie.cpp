@@ -14,6 +14,7 @@
 #include "engine/mesh/edge_length.h"
 #include "engine/mesh/spatial_index.h"
 #include "engine/scheme/cost_rows.h"
+#include "engine/scheme/local_cost.h"
 #include "engine/scheme/ring_signature.h"
 
 namespace triglyph {
@@ -476,17 +477,27 @@ CostMatrix IieScheme::costs(const Surface& surface, const UnitSet& units,
                             std::span<const std::uint32_t> chosen,
                             std::span<const Word> words) const {
   const Ground ground(surface, options_, site_seed_);
-  const bool by_farthest = options_.cost == CostFunction::Displacement;
+  const LocalCost local(surface, options_.cost);
   return fill_cost_rows(chosen.size(), words.size(), [&](std::size_t row, std::span<float> costs) {
     std::optional<Ball> ball = ball_at(ground, units.anchors[chosen[row]]);
     if (!ball || !ground.sample(*ball)) return;
     for (std::size_t word = 0; word < costs.size(); ++word) {
       const std::optional<Plan> planned = plan(*ball, words[word]);
-      if (!planned) continue;
-      costs[word] = static_cast<float>(by_farthest ? ball->farthest(planned->moves)
-                                                   : ball->rms(planned->moves));
+      if (planned) costs[word] = cost_of(surface.mesh, local, *ball, planned->moves);
     }
   });
+}
+
+float IieScheme::cost_of(const Mesh& mesh, const LocalCost& local, const Ball& ball,
+                         const Moves& moves) const {
+  if (options_.cost == CostFunction::Displacement) return static_cast<float>(ball.farthest(moves));
+  if (options_.cost == CostFunction::Rms) return static_cast<float>(ball.rms(moves));
+  std::vector<Move> cap;
+  for (std::size_t i = 0; i < ball.cap.size(); ++i) {
+    const std::uint32_t point = ball.cap[i];
+    cap.push_back({point, mesh.positions[point] + ball.normal * ball.move_of(i, moves)});
+  }
+  return local.of_part(cap);
 }
 
 Embedding IieScheme::embed(const Surface& surface, const UnitSet& units,

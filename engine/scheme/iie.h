@@ -34,6 +34,8 @@
 
 namespace triglyph {
 
+class LocalCost;
+
 class IieScheme final : public Scheme {
  public:
   // Throws Error Usage if marker and subscript, or the part, have more than 16 bits, or for a step,
@@ -96,6 +98,8 @@ class IieScheme final : public Scheme {
   [[nodiscard]] std::optional<double> centre_shift(const Ball& ball, double area) const;
   [[nodiscard]] static Moves moves_to(const Ball& ball, double shift, double volume, double wanted);
   [[nodiscard]] std::optional<Plan> plan(const Ball& ball, const Word& word) const;
+  [[nodiscard]] float cost_of(const Mesh& mesh, const LocalCost& local, const Ball& ball,
+                              const Moves& moves) const;
   [[nodiscard]] static std::optional<Moves> refine(const Ground& ground, const Ball& ball,
                                                    const Plan& plan);
   [[nodiscard]] std::uint32_t area_bits(const Word& word) const {

@@ -28,6 +28,10 @@ constexpr std::array<KnownScheme, kNames.size()> kSchemes = {
      {AieScheme::defaults, make<AieScheme>},
      {IieScheme::defaults, make<IieScheme>}}};
 
+// by CostFunction
+constexpr std::array<std::string_view, 4> kCostNames = {"displacement", "rms", "hausdorff",
+                                                        "normal"};
+
 const KnownScheme& scheme_named(const std::string& name) {
   const auto at = std::find(kNames.begin(), kNames.end(), name);
   if (at == kNames.end()) throw Error(ErrorCode::Usage, {}, "", "unknown scheme '" + name + "'");
@@ -36,15 +40,18 @@ const KnownScheme& scheme_named(const std::string& name) {
 
 }  // namespace
 
+std::span<const std::string_view> cost_names() {
+  return kCostNames;
+}
+
 std::string_view name_of(CostFunction cost) {
-  return cost == CostFunction::Displacement ? "displacement" : "rms";
+  return kCostNames.at(static_cast<std::size_t>(cost));
 }
 
 CostFunction cost_function(const std::string& name) {
-  for (const CostFunction cost : {CostFunction::Displacement, CostFunction::Rms}) {
-    if (name == name_of(cost)) return cost;
-  }
-  throw Error(ErrorCode::Usage, {}, "", "unknown cost '" + name + "'");
+  const auto at = std::find(kCostNames.begin(), kCostNames.end(), name);
+  if (at == kCostNames.end()) throw Error(ErrorCode::Usage, {}, "", "unknown cost '" + name + "'");
+  return static_cast<CostFunction>(at - kCostNames.begin());
 }
 
 std::string_view name_of(AieGroups groups) {

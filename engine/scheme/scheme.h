@@ -56,9 +56,12 @@ struct UnitSet {
 enum class CostFunction {
   Displacement,  // the farthest move of a unit's points
   Rms,           // root mean square of the moves of a unit's points
+  Hausdorff,     // between the surface about a unit before and after: sliding along it is free
+  Normal,        // change of a face's normal times the root of its area: what shading shows
 };
 
-// "displacement", "rms"; the inverse throws Error Usage.
+// "displacement", "rms", "hausdorff", "normal"; the inverse throws Error Usage. See local_cost.h.
+[[nodiscard]] std::span<const std::string_view> cost_names();
 [[nodiscard]] std::string_view name_of(CostFunction cost);
 [[nodiscard]] CostFunction cost_function(const std::string& name);
 

@@ -6,6 +6,7 @@
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
 #include "engine/scheme/cost_rows.h"
+#include "engine/scheme/local_cost.h"
 
 namespace triglyph {
 namespace {
@@ -69,6 +70,21 @@ bool keeps_longest_base(double x, double height) {
 // note: std::hypot guards against overflow that cannot occur here, at ten times the cost
 double length(double x, double y) {
   return std::sqrt(x * x + y * y);
+}
+
+// f(value) for each of the values; where they have few bits, worked out once for each.
+template <typename F>
+std::vector<float> values_of_each(int bits, std::span<const std::uint32_t> values, const F& f) {
+  std::vector<float> known;
+  if (std::size_t{1} << bits <= values.size()) {
+    known.resize(std::size_t{1} << bits);
+    for (std::uint32_t value = 0; value < known.size(); ++value) known[value] = f(value);
+  }
+  std::vector<float> results(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    results[i] = known.empty() ? f(values[i]) : known[values[i]];
+  }
+  return results;
 }
 
 // Directions along a base and from it towards an apex, unit vectors.
@@ -167,20 +183,6 @@ class TsqScheme::ApexMoves {
     return apex ? static_cast<float>(apex->move) : kInfeasible;
   }
 
-  // The same for each of these values; those of few bits are worked out once.
-  [[nodiscard]] std::vector<float> moves(std::span<const std::uint32_t> values) const {
-    std::vector<float> known;
-    if (std::size_t{1} << channel_.bits() <= values.size()) {
-      known.resize(std::size_t{1} << channel_.bits());
-      for (std::uint32_t bits = 0; bits < known.size(); ++bits) known[bits] = move(bits);
-    }
-    std::vector<float> moves(values.size());
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      moves[i] = known.empty() ? move(values[i]) : known[values[i]];
-    }
-    return moves;
-  }
-
  private:
   const FlatTriangle& triangle_;
   const Channel& channel_;
@@ -241,9 +243,6 @@ std::optional<TsqScheme::Marked> TsqScheme::embed_marker(
   Marked marked;
   for (std::size_t i = 0; i < 3; ++i) {
     marked.corners[i] = frame.at(flat->x[i], flat->y[i]);
-    const double squared = (marked.corners[i] - corners[i]).sqrnorm();
-    marked.sum_of_squares += squared;
-    marked.farthest = std::max(marked.farthest, std::sqrt(squared));
   }
   for (std::size_t i = 0; i < 3; ++i) {
     marked.outer[i] = outer_triangle(marked.corners, i, mesh.positions[points[3 + i]]);
@@ -283,12 +282,14 @@ UnitSet TsqScheme::find_units(const Surface& surface) const {
   return units;
 }
 
-float TsqScheme::combine(const Marked& marked, float s, float d1, float d2) const {
-  if (options_.cost == CostFunction::Displacement) {
-    return std::max({static_cast<float>(marked.farthest), s, d1, d2});
-  }
-  const float sum = static_cast<float>(marked.sum_of_squares) + s * s + d1 * d1 + d2 * d2;
-  return std::sqrt(sum / 6);
+std::optional<Vec3> TsqScheme::place_apex(const Mesh& mesh, std::span<const std::uint32_t> points,
+                                          const Marked& marked, std::size_t i,
+                                          std::uint32_t bits) const {
+  const FlatTriangle& triangle = marked.outer[i];
+  const std::optional<Apex> apex = ApexChoices(triangle, outer_channels_[i]).place(bits);
+  if (!apex) return std::nullopt;
+  const Frame frame(marked.corners[(i + 1) % 3], marked.corners[i], mesh.positions[points[3 + i]]);
+  return frame.at(apex->x * triangle.base, apex->height * triangle.base);
 }
 
 CostMatrix TsqScheme::costs(const Surface& surface, const UnitSet& units,
@@ -299,15 +300,27 @@ CostMatrix TsqScheme::costs(const Surface& surface, const UnitSet& units,
     const auto bits = outer_bits(word);
     for (std::size_t i = 0; i < 3; ++i) values[i].push_back(bits[i]);
   }
+  const LocalCost local(surface, options_.cost);
   return fill_cost_rows(chosen.size(), words.size(), [&](std::size_t row, std::span<float> costs) {
-    const auto marked = embed_marker(surface.mesh, units.moved[chosen[row]]);
+    const auto points = units.moved[chosen[row]];
+    const auto marked = embed_marker(surface.mesh, points);
     if (!marked) return;
-    std::array<std::vector<float>, 3> moves;
+    const std::array<Move, 3> corners{{{points[0], marked->corners[0]},
+                                       {points[1], marked->corners[1]},
+                                       {points[2], marked->corners[2]}}};
+    const float marker = local.of_part(corners);
+    std::array<std::vector<float>, 3> parts;
     for (std::size_t i = 0; i < 3; ++i) {
-      moves[i] = ApexMoves(marked->outer[i], outer_channels_[i]).moves(values[i]);
+      const ApexMoves moves(marked->outer[i], outer_channels_[i]);
+      parts[i] = values_of_each(outer_channels_[i].bits(), values[i], [&](std::uint32_t bits) {
+        if (local.goes_by_distance()) return local.of_distance(moves.move(bits));
+        const auto apex = place_apex(surface.mesh, points, *marked, i, bits);
+        return apex ? local.of_part(std::array<Move, 1>{{{points[3 + i], *apex}}}) : kInfeasible;
+      });
     }
     for (std::size_t word = 0; word < costs.size(); ++word) {
-      costs[word] = combine(*marked, moves[0][word], moves[1][word], moves[2][word]);
+      const std::array<float, 4> unit{marker, parts[0][word], parts[1][word], parts[2][word]};
+      costs[word] = local.combine(unit, 6);
     }
   });
 }
@@ -323,12 +336,9 @@ Embedding TsqScheme::embed(const Surface& surface, const UnitSet& units,
     const auto bits = outer_bits(words[placement.word]);
     std::array<Vec3, 3> apexes;
     for (std::size_t i = 0; i < 3; ++i) {
-      const FlatTriangle& triangle = marked->outer[i];
-      const std::optional<Apex> apex = ApexChoices(triangle, outer_channels_[i]).place(bits[i]);
+      const auto apex = place_apex(surface.mesh, points, *marked, i, bits[i]);
       if (!apex) return false;
-      const Frame frame(marked->corners[(i + 1) % 3], marked->corners[i],
-                        surface.mesh.positions[points[3 + i]]);
-      apexes[i] = frame.at(apex->x * triangle.base, apex->height * triangle.base);
+      apexes[i] = *apex;
     }
     for (std::size_t i = 0; i < 3; ++i) {
       embedding.positions[points[i]] = marked->corners[i];

@@ -70,8 +70,6 @@ class TsqScheme final : public Scheme {
   struct Marked {
     std::array<Vec3, 3> corners;
     std::array<FlatTriangle, 3> outer;  // S, D1, D2
-    double farthest = 0;                // move of M's corners, model units
-    double sum_of_squares = 0;
   };
   struct Apex {
     double x = 0;       // of the base
@@ -82,13 +80,18 @@ class TsqScheme final : public Scheme {
   class ApexChoices;
   class ApexMoves;
 
+  // Where the apex of outer triangle i goes for this value.
+  [[nodiscard]] std::optional<Vec3> place_apex(const Mesh& mesh,
+                                               std::span<const std::uint32_t> points,
+                                               const Marked& marked, std::size_t i,
+                                               std::uint32_t bits) const;
+
   [[nodiscard]] static Channel make_channel(const WordCode& code, double step, int bits,
                                             std::size_t role);
   [[nodiscard]] std::optional<FlatCorners> reshape_to_marker(const FlatTriangle& triangle) const;
   [[nodiscard]] std::optional<Marked> embed_marker(const Mesh& mesh,
                                                    std::span<const std::uint32_t> points) const;
   [[nodiscard]] std::array<std::uint32_t, 3> outer_bits(const Word& word) const;
-  [[nodiscard]] float combine(const Marked& marked, float s, float d1, float d2) const;
   [[nodiscard]] bool has_marker(const Mesh& mesh, std::uint32_t base, Reading& reading) const;
   void read_outer(const Mesh& mesh, const std::array<std::uint32_t, 6>& points,
                   Reading& reading) const;

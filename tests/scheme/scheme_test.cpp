@@ -146,6 +146,33 @@ TEST_P(EveryScheme, CostIsTheMoveOfTheUnit) {
   }
 }
 
+// The surface moves at most as far as its points, and where no point moves nothing changes.
+TEST_P(EveryScheme, HausdorffCostIsAtMostTheFarthestMove) {
+  const auto& ball = test::bumpy_ball();
+  const auto words = code_.fill_words(std::min(code_.capacity(), 16U));
+  const auto matrix = [&](CostFunction function) {
+    const auto scheme = this->scheme(function);
+    const Chosen chosen = choose(*scheme, ball.surface());
+    return scheme->costs(ball.surface(), chosen.units, chosen.valid, words).values;
+  };
+  const auto farthest = matrix(CostFunction::Displacement);
+  const auto hausdorff = matrix(CostFunction::Hausdorff);
+  const auto normal = matrix(CostFunction::Normal);
+  ASSERT_EQ(hausdorff.size(), farthest.size());
+  std::size_t below = 0;
+  for (std::size_t i = 0; i < farthest.size(); ++i) {
+    EXPECT_EQ(hausdorff[i] == kInfeasible, farthest[i] == kInfeasible);
+    EXPECT_EQ(normal[i] == kInfeasible, farthest[i] == kInfeasible);
+    if (farthest[i] == kInfeasible) continue;
+    EXPECT_GE(hausdorff[i], 0);
+    EXPECT_LE(hausdorff[i], farthest[i] * 1.001F);
+    EXPECT_GT(normal[i], 0);
+    below += hausdorff[i] < 0.99F * farthest[i] ? 1 : 0;
+  }
+  // iie moves along the normal, where nothing is free
+  EXPECT_GT(below, GetParam() == "iie" ? 0 : farthest.size() / 10);
+}
+
 TEST_P(EveryScheme, ReadsTheSameUnderAnySimilarityAndOrder) {
   const auto& ball = test::bumpy_ball();
   const auto scheme = relative_scheme();
