@@ -1,6 +1,7 @@
 #include "engine/scheme/local_cost.h"
 
 #include <array>
+#include <vector>
 
 namespace triglyph {
 namespace {
@@ -30,6 +31,11 @@ void visit_faces(const Surface& surface, std::uint32_t point, const Visit& visit
   for (const auto face : surface.halfedges.kernel.vf_range(vertex)) {
     visit(static_cast<std::uint32_t>(face.idx()));
   }
+}
+
+// The corners of a face from a given point on.
+Corners starting_at(const Corners& corners, std::size_t first) {
+  return {corners[first], corners[(first + 1) % 3], corners[(first + 2) % 3]};
 }
 
 Vec3 area_vector(const Corners& corners) {
@@ -66,21 +72,41 @@ float LocalCost::of_part(std::span<const Move> moves) const {
   return kInfeasible;
 }
 
-// The moved points from the surface as it was, and their old places from the faces around them as
-// they are now. A point that slides within its surface is nearly free.
+// A moved point, the midpoints of its edges and the centroids of its faces: from the surface as it
+// was, and the same places as they were from these faces as they are now. What slides within its
+// surface is nearly free.
 double LocalCost::surface_distance(std::span<const Move> moves) const {
   double farthest = 0;
-  for (const Move& move : moves) {
-    const Vec3& from = surface_.mesh.positions[move.point];
-    const double reach = (move.to - from).norm();
-    if (reach <= farthest) continue;
-    farthest = std::max(farthest, std::min(reach, index_->closest(move.to, reach).distance));
+  std::vector<Corners> before, after;  // faces about a point, from that on
+  const auto weigh = [&](const Vec3& old_place, const Vec3& new_place) {
+    const double reach = (new_place - old_place).norm();
+    if (reach <= farthest) return;
     double back = reach;
+    for (const Corners& face : after) {
+      const Vec3 closest = closest_on_triangle(old_place, face[0], face[1], face[2]);
+      back = std::min(back, (closest - old_place).norm());
+    }
+    const double there = std::min(reach, index_->closest(new_place, reach).distance);
+    farthest = std::max({farthest, back, there});
+  };
+  for (const Move& move : moves) {
+    before.clear();
+    after.clear();
     visit_faces(surface_, move.point, [&](std::uint32_t face) {
-      const Corners now = moved_corners(surface_.mesh, face, moves);
-      back = std::min(back, (closest_on_triangle(from, now[0], now[1], now[2]) - from).norm());
+      const Triangle& triangle = surface_.mesh.triangles[face];
+      const auto first = static_cast<std::size_t>(
+          std::find(triangle.begin(), triangle.end(), move.point) - triangle.begin());
+      before.push_back(starting_at(corners_of(surface_.mesh, face), first % 3));
+      after.push_back(starting_at(moved_corners(surface_.mesh, face, moves), first % 3));
     });
-    farthest = std::max(farthest, back);
+    weigh(surface_.mesh.positions[move.point], move.to);
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      const Corners& old_face = before[i];
+      const Corners& new_face = after[i];
+      weigh((old_face[0] + old_face[1]) * 0.5, (new_face[0] + new_face[1]) * 0.5);
+      weigh((old_face[0] + old_face[1] + old_face[2]) / 3.0,
+            (new_face[0] + new_face[1] + new_face[2]) / 3.0);
+    }
   }
   return farthest;
 }
