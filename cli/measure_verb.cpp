@@ -25,19 +25,21 @@ int run_measure(const MeasureArguments& arguments) {
   const Mesh& second = marked.mesh();
   const bool same =
       first.triangles == second.triangles && first.positions.size() == second.positions.size();
+  const double diagonal = box_diagonal(first.positions);
   HausdorffDistance distance;
   with_threads(arguments.machine.threads(), [&] {
-    distance = same ? hausdorff_of_move(first.triangles, first.positions, second.positions)
-                    : hausdorff(first, second);
+    distance = same ? hausdorff_of_move(first.triangles, first.positions, second.positions,
+                                        kHausdorffTolerance * diagonal)
+                    : hausdorff(first, second, kHausdorffTolerance * diagonal);
   });
-  const double diagonal = box_diagonal(first.positions);
   nlohmann::ordered_json json = {{"original", arguments.original.string()},
                                  {"marked", arguments.marked.string()},
                                  {"same_connectivity", same},
                                  {"diagonal", diagonal},
-                                 {"hausdorff_forward", distance.forward},
-                                 {"hausdorff_backward", distance.backward},
+                                 {"hausdorff_forward", distance.forward.distance},
+                                 {"hausdorff_backward", distance.backward.distance},
                                  {"hausdorff", distance.symmetric()},
+                                 {"hausdorff_error", distance.error()},
                                  {"hausdorff_rel_diag", distance.symmetric() / diagonal}};
   if (same) {
     const Displacement moved = displacement(first.positions, second.positions);

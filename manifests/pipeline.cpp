@@ -158,9 +158,11 @@ void measure(Task& task) noexcept {
       const Displacement moved = displacement(mesh.positions, task.marking.positions);
       record.displacement_max = moved.max;
       record.displacement_rms = moved.rms;
-      record.hausdorff =
-          hausdorff_of_move(mesh.triangles, mesh.positions, task.marking.positions).symmetric();
-      record.hausdorff_rel_diag = record.hausdorff / box_diagonal(mesh.positions);
+      const double diagonal = box_diagonal(mesh.positions);
+      record.hausdorff = hausdorff_of_move(mesh.triangles, mesh.positions, task.marking.positions,
+                                           kHausdorffTolerance * diagonal)
+                             .symmetric();
+      record.hausdorff_rel_diag = record.hausdorff / diagonal;
     });
   }
   task.output.reset();

@@ -8,7 +8,6 @@
 #include "engine/mesh/halfedges.h"
 #include "engine/mesh/mesh_file.h"
 #include "engine/mesh/sample_shapes.h"
-#include "engine/metric/hausdorff.h"
 #include "engine/scheme/integral_invariants.h"
 
 namespace triglyph {
@@ -94,18 +93,6 @@ void BM_MarkMessage(benchmark::State& state, const std::string& scheme) {
   count_triangles(state, subject.mesh);
 }
 
-void BM_HausdorffOfMove(benchmark::State& state) {
-  const Subject subject(static_cast<std::size_t>(state.range(0)));
-  const Marking marking = mark(
-      subject.surface(), Message{1, 2, 3, 4, 5, 6, 7, 8}, Key::trial(), {},
-      [](const Vec3& point) { return point; }, 0);
-  for (auto _ : state) {
-    benchmark::DoNotOptimize(
-        hausdorff_of_move(subject.mesh.triangles, subject.mesh.positions, marking.positions));
-  }
-  count_triangles(state, subject.mesh);
-}
-
 void sizes(benchmark::internal::Benchmark* bench) {
   bench->Arg(10000)->Arg(100000)->Arg(1000000)->Unit(benchmark::kMillisecond)->UseRealTime();
 }
@@ -132,7 +119,6 @@ BENCHMARK_CAPTURE(BM_MarkMessage, tsq, "tsq")->Apply(sizes);
 BENCHMARK_CAPTURE(BM_MarkMessage, aie, "aie")->Apply(sizes);
 BENCHMARK_CAPTURE(BM_MarkMessage, iie, "iie")->Apply(small_sizes);
 BENCHMARK(BM_InvariantsOfBunny)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(BM_HausdorffOfMove)->Apply(sizes);
 
 }  // namespace
 }  // namespace triglyph

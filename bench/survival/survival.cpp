@@ -5,16 +5,12 @@
 #include <string>
 #include <vector>
 
-#include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
-#include <OpenMesh/Tools/Decimater/DecimaterT.hh>
-#include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
-#include <OpenMesh/Tools/Smoother/JacobiLaplaceSmootherT.hh>
-
 #include "engine/base/error.h"
 #include "engine/extract.h"
 #include "engine/mark.h"
 #include "engine/mesh/mesh_file.h"
 #include "tests/support/attacks.h"
+#include "tests/support/remeshing.h"
 
 namespace triglyph {
 namespace {
@@ -27,55 +23,6 @@ struct NamedAttack {
   const char* name;
   Attack apply;
 };
-
-struct Traits : OpenMesh::DefaultTraits {
-  using Point = Vec3;
-  using Normal = Vec3;
-};
-using Workpiece = OpenMesh::TriMesh_ArrayKernelT<Traits>;
-
-Workpiece workpiece_of(const Mesh& mesh) {
-  Workpiece piece;
-  for (const Vec3& p : mesh.positions) piece.add_vertex(p);
-  for (const Triangle& t : mesh.triangles) {
-    piece.add_face(piece.vertex_handle(t[0]), piece.vertex_handle(t[1]), piece.vertex_handle(t[2]));
-  }
-  return piece;
-}
-
-Mesh mesh_of(const Workpiece& piece) {
-  Mesh mesh;
-  for (const auto vertex : piece.vertices()) mesh.positions.push_back(piece.point(vertex));
-  for (const auto face : piece.faces()) {
-    Triangle triangle{};
-    std::size_t i = 0;
-    for (const auto vertex : piece.fv_range(face)) {
-      triangle[i++] = static_cast<std::uint32_t>(vertex.idx());
-    }
-    mesh.triangles.push_back(triangle);
-  }
-  return mesh;
-}
-
-Mesh smoothed(const Mesh& mesh) {
-  Workpiece piece = workpiece_of(mesh);
-  OpenMesh::Smoother::JacobiLaplaceSmootherT<Workpiece> smoother(piece);
-  using Base = OpenMesh::Smoother::SmootherT<Workpiece>;
-  smoother.initialize(Base::Tangential_and_Normal, Base::C0);
-  smoother.smooth(1);
-  return mesh_of(piece);
-}
-
-Mesh decimated(const Mesh& mesh, double share_removed) {
-  Workpiece piece = workpiece_of(mesh);
-  OpenMesh::Decimater::DecimaterT<Workpiece> decimater(piece);
-  OpenMesh::Decimater::ModQuadricT<Workpiece>::Handle quadric;
-  decimater.add(quadric);
-  decimater.initialize();
-  decimater.decimate(static_cast<std::size_t>(share_removed * double(mesh.positions.size())));
-  piece.garbage_collection();
-  return mesh_of(piece);
-}
 
 Mesh turned_inside_out(Mesh mesh) {
   for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
@@ -120,8 +67,9 @@ std::vector<NamedAttack> attacks() {
       {"noise 0.1 %", noise(0.001)},
       {"noise 0.3 %", noise(0.003)},
       {"half cut away", cropped_half},
-      {"one smoothing step", [](const Mesh& m, std::uint64_t) { return smoothed(m); }},
-      {"10 % of points decimated", [](const Mesh& m, std::uint64_t) { return decimated(m, 0.1); }},
+      {"one smoothing step", [](const Mesh& m, std::uint64_t) { return test::smoothed(m); }},
+      {"10 % of points decimated",
+       [](const Mesh& m, std::uint64_t) { return test::decimated(m, 0.1); }},
       {"inside out", [](const Mesh& m, std::uint64_t) { return turned_inside_out(m); }},
   };
 }

@@ -52,13 +52,16 @@ struct SpatialIndex::Scene {
     double best_squared;
   };
 
+  [[nodiscard]] Vec3 closest_on(const Vec3& query, std::uint32_t index) const {
+    const Triangle& triangle = triangles[index];
+    return closest_on_triangle(query, positions[triangle[0]], positions[triangle[1]],
+                               positions[triangle[2]]);
+  }
+
   static bool visit(RTCPointQueryFunctionArguments* arguments) {
     auto& query = *static_cast<Query*>(arguments->userPtr);
     const Scene& scene = *query.scene;
-    const Triangle& triangle = scene.triangles[arguments->primID];
-    const Vec3 point =
-        closest_on_triangle(query.point, scene.positions[triangle[0]], scene.positions[triangle[1]],
-                            scene.positions[triangle[2]]);
+    const Vec3 point = scene.closest_on(query.point, arguments->primID);
     const double squared = (point - query.point).sqrnorm();
     const bool nearer = squared < query.best_squared ||
                         (squared == query.best_squared && arguments->primID < query.best.triangle);
@@ -83,10 +86,7 @@ struct SpatialIndex::Scene {
   static bool collect(RTCPointQueryFunctionArguments* arguments) {
     auto& query = *static_cast<BallQuery*>(arguments->userPtr);
     const Scene& scene = *query.scene;
-    const Triangle& triangle = scene.triangles[arguments->primID];
-    const Vec3 point =
-        closest_on_triangle(query.centre, scene.positions[triangle[0]],
-                            scene.positions[triangle[1]], scene.positions[triangle[2]]);
+    const Vec3 point = scene.closest_on(query.centre, arguments->primID);
     if ((point - query.centre).sqrnorm() <= query.squared_radius) {
       query.found.push_back(arguments->primID);
     }
@@ -169,6 +169,20 @@ ClosestPoint SpatialIndex::closest(const Vec3& query, double reach) const {
   state.best.distance = std::sqrt(state.best_squared);
   if (state.best.distance <= reach) return state.best;
   return {std::numeric_limits<double>::infinity(), kNoTriangle, Vec3(0, 0, 0)};
+}
+
+double SpatialIndex::distance_to(const Vec3& query, std::uint32_t triangle) const {
+  return std::sqrt((scene_->closest_on(query, triangle) - query).sqrnorm());
+}
+
+Plane SpatialIndex::prism_side(std::uint32_t triangle, std::size_t edge) const {
+  const auto corner = [&](std::size_t i) {
+    return scene_->positions[scene_->triangles[triangle][i % 3]];
+  };
+  const Vec3 along = corner(edge + 1) - corner(edge);
+  const Vec3 outwards = cross(along, cross(along, corner(edge + 2) - corner(edge)));
+  const double length = outwards.norm();
+  return {corner(edge), length > 0 ? outwards / length : Vec3(0, 0, 0)};
 }
 
 std::optional<std::vector<std::uint32_t>> SpatialIndex::triangles_in_ball(const Vec3& centre,

@@ -22,6 +22,11 @@ struct ClosestPoint {
   Vec3 point{0, 0, 0};
 };
 
+struct Plane {
+  Vec3 point{0, 0, 0};
+  Vec3 normal{0, 0, 0};  // of any length; zero where the plane is undefined
+};
+
 class SpatialIndex {
  public:
   // Keeps views of both; they must outlive the index. O(t log t), parallel.
@@ -32,6 +37,13 @@ class SpatialIndex {
   // The nearest point on any triangle within `reach` of `query` (inclusive; infinity: anywhere).
   // Safe to call from many threads. O(log t) typically.
   [[nodiscard]] ClosestPoint closest(const Vec3& query, double reach) const;
+
+  // Of one of the triangles from `query`. O(1).
+  [[nodiscard]] double distance_to(const Vec3& query, std::uint32_t triangle) const;
+
+  // The side plane over edge 0, 1 or 2 of the prism of points whose foot on the triangle's plane
+  // lies inside the triangle. The normal, of unit length, points outwards.
+  [[nodiscard]] Plane prism_side(std::uint32_t triangle, std::size_t edge) const;
 
   // All triangles that come as near as `radius` (inclusive, finite) to `centre`, ascending; nothing
   // if there are more than `most`. Safe to call from many threads. O(log t + triangles found).

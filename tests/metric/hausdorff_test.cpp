@@ -1,6 +1,9 @@
 #include "engine/metric/hausdorff.h"
 
+#include <array>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -8,10 +11,14 @@
 #include "engine/base/random.h"
 #include "engine/mesh/spatial_index.h"
 #include "tests/support/arenas.h"
+#include "tests/support/cgal_hausdorff.h"
+#include "tests/support/remeshing.h"
 #include "tests/support/shapes.h"
 
 namespace triglyph {
 namespace {
+
+constexpr double kTolerance = 1e-7;
 
 Vec3 random_point(std::uint64_t seed, std::uint64_t i, double size) {
   return Vec3(random_unit(seed, 0, i) - 0.5, random_unit(seed, 1, i) - 0.5,
@@ -78,29 +85,32 @@ TEST(Hausdorff, OfParallelSheetsIsTheirDistance) {
   const Mesh sheet = test::flat_grid(8, 8);
   Mesh lifted = sheet;
   for (Vec3& p : lifted.positions) p[2] += 0.25;
-  EXPECT_NEAR(hausdorff(sheet, lifted).symmetric(), 0.25, 1e-12);
-  EXPECT_NEAR(hausdorff_of_move(sheet.triangles, sheet.positions, lifted.positions).symmetric(),
-              0.25, 1e-12);
+  EXPECT_NEAR(hausdorff(sheet, lifted, kTolerance).symmetric(), 0.25, 1e-12);
+  EXPECT_NEAR(
+      hausdorff_of_move(sheet.triangles, sheet.positions, lifted.positions, kTolerance).symmetric(),
+      0.25, 1e-12);
 }
 
 TEST(Hausdorff, MovingAPointWithinAFlatSheetCostsNothing) {
   const Mesh sheet = test::flat_grid(8, 8);
   Mesh moved = sheet;
   moved.positions[30] += Vec3(0.2, 0.1, 0);
-  EXPECT_NEAR(hausdorff_of_move(sheet.triangles, sheet.positions, moved.positions).symmetric(), 0,
-              1e-14);
+  EXPECT_NEAR(
+      hausdorff_of_move(sheet.triangles, sheet.positions, moved.positions, kTolerance).symmetric(),
+      0, 1e-14);
   moved.positions[30] += Vec3(0, 0, 0.01);
-  EXPECT_NEAR(hausdorff_of_move(sheet.triangles, sheet.positions, moved.positions).symmetric(),
-              0.01, 1e-12);
+  EXPECT_NEAR(
+      hausdorff_of_move(sheet.triangles, sheet.positions, moved.positions, kTolerance).symmetric(),
+      0.01, 1e-12);
 }
 
 TEST(Hausdorff, HasTwoDirections) {
   const Mesh large = test::flat_grid(8, 1);
   const Mesh small = test::flat_grid(2, 1);
-  const HausdorffDistance distance = hausdorff(large, small);
-  EXPECT_NEAR(distance.forward, 6, 1e-12);
-  EXPECT_NEAR(distance.backward, 0, 1e-14);
-  EXPECT_EQ(distance.symmetric(), distance.forward);
+  const HausdorffDistance distance = hausdorff(large, small, kTolerance);
+  EXPECT_NEAR(distance.forward.distance, 6, 1e-12);
+  EXPECT_NEAR(distance.backward.distance, 0, 1e-14);
+  EXPECT_EQ(distance.symmetric(), distance.forward.distance);
 }
 
 TEST(Hausdorff, OfAMoveEqualsThatOfTwoMeshes) {
@@ -109,11 +119,93 @@ TEST(Hausdorff, OfAMoveEqualsThatOfTwoMeshes) {
   for (std::size_t i = 0; i < after.positions.size(); i += 7) {
     after.positions[i] += random_point(11, i, 0.01);
   }
-  const auto general = hausdorff(before, after);
-  const auto of_move = hausdorff_of_move(before.triangles, before.positions, after.positions);
-  EXPECT_EQ(of_move.forward, general.forward);
-  EXPECT_EQ(of_move.backward, general.backward);
+  const auto general = hausdorff(before, after, kTolerance);
+  const auto of_move =
+      hausdorff_of_move(before.triangles, before.positions, after.positions, kTolerance);
+  EXPECT_NEAR(of_move.forward.distance, general.forward.distance, kTolerance);
+  EXPECT_NEAR(of_move.backward.distance, general.backward.distance, kTolerance);
   EXPECT_LE(of_move.symmetric(), displacement(before.positions, after.positions).max);
+}
+
+TEST(Hausdorff, AgreesWithCgal) {
+  const Mesh& ball = test::bumpy_ball().mesh;
+  Mesh moved = ball;
+  for (std::size_t i = 0; i < moved.positions.size(); i += 3) {
+    moved.positions[i] += random_point(13, i, 0.02);
+  }
+  const Mesh coarse = test::decimated(ball, 0.7);
+  const Mesh other = make_sample_shape(SampleShape::HighGenus, 3000, 5);
+  for (const Mesh* second : {&std::as_const(moved), &coarse, &other}) {
+    const HausdorffDistance ours = hausdorff(ball, *second, kTolerance);
+    EXPECT_LE(ours.forward.error, kTolerance);
+    EXPECT_LE(ours.backward.error, kTolerance);
+    const double cgal = test::cgal_hausdorff(ball, *second, 1e-5);
+    EXPECT_NEAR(cgal, ours.symmetric(), 1e-5);
+    EXPECT_LE(cgal, ours.symmetric() + ours.error() + 1e-9);
+  }
+}
+
+// Only a lower bound could be had from points: a roof's ridge is far from the floor, a valley's
+// midline from two walls.
+TEST(Hausdorff, FindsTheFarthestPointInsideAFace) {
+  const Mesh walls{{Vec3(-1, 0, -1), Vec3(-1, 4, -1), Vec3(-1, 4, 1), Vec3(-1, 0, 1),
+                    Vec3(1, 0, -1), Vec3(1, 4, -1), Vec3(1, 4, 1), Vec3(1, 0, 1)},
+                   {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}}};
+  const Mesh floor{{Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(1, 4, 0), Vec3(-1, 4, 0)},
+                   {{0, 1, 2}, {0, 2, 3}}};
+  const HausdorffDistance distance = hausdorff(floor, walls, kTolerance);
+  EXPECT_NEAR(distance.forward.distance, 1, kTolerance);  // along the whole midline
+  EXPECT_LE(distance.forward.error, kTolerance);
+  EXPECT_NEAR(distance.forward.at[0], 0, 2 * kTolerance);
+}
+
+TEST(Hausdorff, OfTwoTessellationsOfAPlaneIsNothing) {
+  Mesh coarse = test::flat_grid(7, 5);
+  for (Vec3& p : coarse.positions) p = Vec3(p[0] * 3 / 7, p[1] * 3 / 5, 0.1 * p[0]);
+  Mesh fine = test::flat_grid(31, 29);
+  for (Vec3& p : fine.positions) p = Vec3(p[0] * 3 / 31, p[1] * 3 / 29, 0.1 * p[0] * 7 / 31);
+  const HausdorffDistance distance = hausdorff(coarse, fine, kTolerance);
+  EXPECT_LE(distance.symmetric(), 1e-14);
+  EXPECT_LE(distance.error(), kTolerance);
+}
+
+TEST(Hausdorff, SaysHowFarItGotIfItMayNotSplitEnough) {
+  const Mesh ball = test::bumpy_ball().mesh;
+  const Mesh coarse = test::decimated(ball, 0.9);
+  const SpatialIndex index(coarse.positions, coarse.triangles);
+  const std::vector<double> reach(ball.triangles.size(), std::numeric_limits<double>::infinity());
+  const auto far = farthest_point(ball.positions, ball.triangles, reach, index, {1e-9, 1 << 22});
+  const auto hasty = farthest_point(ball.positions, ball.triangles, reach, index, {1e-9, 0});
+  EXPECT_LE(far.error, 1e-9);
+  EXPECT_GT(hasty.error, 1e-9);
+  EXPECT_LE(hasty.distance, far.distance);
+  EXPECT_GE(hasty.distance + hasty.error, far.distance);
+}
+
+TEST(LeastGreatestMean, IsTheValueOfTheMatrixGame) {
+  for (std::uint64_t trial = 0; trial < 200; ++trial) {
+    std::array<std::array<double, 3>, 3> columns{};
+    for (std::size_t j = 0; j < 3; ++j) {
+      const Vec3 entries = random_point(20 + j, trial, 2);
+      columns[j] = {entries[0], entries[1], entries[2]};
+    }
+    double sampled = std::numeric_limits<double>::infinity();
+    constexpr int kParts = 100;
+    for (int u = 0; u <= kParts; ++u) {
+      for (int v = 0; u + v <= kParts; ++v) {
+        double greatest = -std::numeric_limits<double>::infinity();
+        for (std::size_t i = 0; i < 3; ++i) {
+          greatest = std::max(
+              greatest,
+              (u * columns[0][i] + v * columns[1][i] + (kParts - u - v) * columns[2][i]) / kParts);
+        }
+        sampled = std::min(sampled, greatest);
+      }
+    }
+    const double value = least_greatest_mean(columns);
+    EXPECT_LE(value, sampled + 1e-12);
+    EXPECT_GE(value, sampled - 0.05);
+  }
 }
 
 TEST(Hausdorff, DoesNotDependOnThreads) {
@@ -121,15 +213,16 @@ TEST(Hausdorff, DoesNotDependOnThreads) {
   std::vector<Vec3> after = before.positions;
   for (std::size_t i = 0; i < after.size(); ++i) after[i] += random_point(12, i, 0.01);
   test::expect_same_for_any_threads([&] {
-    const auto distance = hausdorff_of_move(before.triangles, before.positions, after);
-    return std::make_pair(distance.forward, distance.backward);
+    const auto distance = hausdorff_of_move(before.triangles, before.positions, after, kTolerance);
+    return std::array{distance.forward.distance, distance.forward.error, distance.backward.distance,
+                      distance.backward.error};
   });
 }
 
 TEST(Hausdorff, IsRefusedWithoutFaces) {
   const Mesh points{{Vec3(0, 0, 0)}, {}};
-  EXPECT_THROW((void)hausdorff(points, test::flat_grid(1, 1)), Error);
-  EXPECT_EQ(hausdorff_of_move({}, {}, {}).symmetric(), 0);
+  EXPECT_THROW((void)hausdorff(points, test::flat_grid(1, 1), kTolerance), Error);
+  EXPECT_EQ(hausdorff_of_move({}, {}, {}, kTolerance).symmetric(), 0);
 }
 
 TEST(Displacement, IsMaximumAndRootMeanSquare) {

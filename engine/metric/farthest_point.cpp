@@ -1,0 +1,361 @@
+#include "engine/metric/farthest_point.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "engine/base/parallel.h"
+
+namespace triglyph {
+namespace {
+
+constexpr std::size_t kTrianglesPerRound = 16384;
+constexpr std::size_t kPiecesPerRound = 1024;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+using Column = std::array<double, 3>;
+
+struct Corner {
+  Vec3 point{0, 0, 0};
+  double distance = kInfinity;
+  std::uint32_t nearest = kNoTriangle;
+};
+
+// A triangle of the surface or a part of one.
+struct Piece {
+  std::array<Corner, 3> corners;
+  double upper = kInfinity;  // no point of it is farther
+  std::uint64_t number = 0;  // breaks ties
+  int depth = 0;
+
+  // the order of a heap whose top is the piece that may hold the farthest point
+  bool operator<(const Piece& other) const {
+    return upper != other.upper ? upper < other.upper : number > other.number;
+  }
+};
+
+struct Parts {
+  std::array<Piece, 3> pieces;
+  std::size_t count = 0;
+
+  void add(const std::array<Corner, 3>& corners) { pieces[count++].corners = corners; }
+  [[nodiscard]] std::span<Piece> view() { return {pieces.data(), count}; }
+  [[nodiscard]] std::span<const Piece> view() const { return {pieces.data(), count}; }
+};
+
+double greatest(const Column& column) {
+  return std::max({column[0], column[1], column[2]});
+}
+
+// The greatest entry of share * a + (1 - share) * b.
+double greatest_of_mix(const Column& a, const Column& b, double share) {
+  Column mix{};
+  for (std::size_t i = 0; i < 3; ++i) mix[i] = share * a[i] + (1 - share) * b[i];
+  return greatest(mix);
+}
+
+// The least of greatest_of_mix over all shares: at an end, or where two of the three lines cross.
+double least_mix(const Column& a, const Column& b) {
+  double least = std::min(greatest(a), greatest(b));
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3;
+    const double slope = (a[i] - b[i]) - (a[j] - b[j]);
+    const double share = (b[j] - b[i]) / slope;
+    if (share > 0 && share < 1) least = std::min(least, greatest_of_mix(a, b, share));
+  }
+  return least;
+}
+
+class BranchAndBound {
+ public:
+  BranchAndBound(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+                 std::span<const double> reach, const SpatialIndex& surface,
+                 const FarthestQuery& query)
+      : positions_(positions),
+        triangles_(triangles),
+        reach_(reach),
+        surface_(surface),
+        query_(query) {}
+
+  FarthestPoint run() {
+    open_triangles();
+    std::make_heap(pieces_.begin(), pieces_.end());
+    std::size_t splits = 0;
+    while (!pieces_.empty() && is_open(pieces_.front().upper) && splits < query_.most_splits) {
+      splits += split_farthest_pieces();
+    }
+    if (!pieces_.empty()) close(pieces_.front().upper);
+    best_.error = std::max(0.0, closed_ - best_.distance);
+    return best_;
+  }
+
+ private:
+  [[nodiscard]] bool is_open(double upper) const {
+    return upper > best_.distance + query_.tolerance;
+  }
+  void close(double upper) { closed_ = std::max(closed_, upper); }
+
+  void try_point(const Corner& corner) {
+    if (corner.distance > best_.distance) best_ = {corner.distance, 0, corner.point};
+  }
+
+  // Turns triangles into pieces, those that may reach farthest first.
+  void open_triangles() {
+    std::vector<std::uint32_t> order(triangles_.size());
+    std::iota(order.begin(), order.end(), 0U);
+    parallel_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return reach_[a] != reach_[b] ? reach_[a] > reach_[b] : a < b;
+    });
+    corners_.assign(positions_.size(), {});
+    for (std::size_t begin = 0; begin < order.size(); begin += kTrianglesPerRound) {
+      if (!is_open(reach_[order[begin]])) {
+        close(reach_[order[begin]]);
+        return;
+      }
+      const std::size_t end = std::min(order.size(), begin + kTrianglesPerRound);
+      open_some({order.data() + begin, order.data() + end});
+    }
+  }
+
+  void open_some(std::span<const std::uint32_t> round) {
+    evaluate_corners(round);
+    std::vector<Piece> opened(round.size());
+    parallel_for(
+        round.size(),
+        [&](std::size_t i) {
+          Piece& piece = opened[i];
+          for (std::size_t c = 0; c < 3; ++c) {
+            piece.corners[c] = corners_[triangles_[round[i]][c]];
+          }
+          piece.upper = std::min(reach_[round[i]], bound_of(piece));
+        },
+        256);
+    for (Piece& piece : opened) keep(piece);
+  }
+
+  // Distances of the corners that have none yet.
+  void evaluate_corners(std::span<const std::uint32_t> round) {
+    std::vector<std::pair<std::uint32_t, double>> wanted;
+    for (const std::uint32_t t : round) {
+      for (const std::uint32_t point : triangles_[t]) {
+        if (corners_[point].nearest != kNoTriangle) continue;
+        wanted.emplace_back(point, reach_[t]);
+        corners_[point].nearest = 0;  // wanted once
+      }
+    }
+    parallel_blocks(
+        wanted.size(),
+        [&](std::size_t begin, std::size_t end) {
+          std::uint32_t hint = kNoTriangle;
+          for (std::size_t i = begin; i < end; ++i) {
+            Corner& corner = corners_[wanted[i].first];
+            corner.point = positions_[wanted[i].first];
+            double reach = wanted[i].second;
+            if (hint != kNoTriangle) {
+              reach = std::min(reach, surface_.distance_to(corner.point, hint));
+            }
+            evaluate(corner, reach);
+            hint = corner.nearest;
+          }
+        },
+        256);
+    for (const auto& [point, reach] : wanted) try_point(corners_[point]);
+  }
+
+  // Precondition: the surface is no farther than reach, up to rounding.
+  void evaluate(Corner& corner, double reach) const {
+    ClosestPoint found = surface_.closest(corner.point, reach);
+    if (found.triangle == kNoTriangle) found = surface_.closest(corner.point, kInfinity);
+    corner.distance = found.distance;
+    corner.nearest = found.triangle;
+  }
+
+  // Of a piece whose corners' distances are known.
+  [[nodiscard]] double bound_of(const Piece& piece) const {
+    const auto& [a, b, c] = piece.corners;
+    if (a.nearest == b.nearest && b.nearest == c.nearest) {
+      return std::max({a.distance, b.distance, c.distance});
+    }
+    std::array<Column, 3> columns{};
+    for (std::size_t j = 0; j < 3; ++j) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Corner& corner = piece.corners[i];
+        columns[j][i] =
+            i == j ? corner.distance : surface_.distance_to(corner.point, piece.corners[j].nearest);
+      }
+    }
+    return least_greatest_mean(columns);
+  }
+
+  // Puts a piece on the list if it may hold the farthest point.
+  bool keep(Piece& piece) {
+    if (!is_open(piece.upper)) {
+      close(piece.upper);
+      return false;
+    }
+    piece.number = ++numbered_;
+    pieces_.push_back(piece);
+    return true;
+  }
+
+  // Splits the pieces with the greatest bounds. Returns how many.
+  std::size_t split_farthest_pieces() {
+    std::vector<Piece> round;
+    while (!pieces_.empty() && is_open(pieces_.front().upper) && round.size() < kPiecesPerRound) {
+      std::pop_heap(pieces_.begin(), pieces_.end());
+      round.push_back(pieces_.back());
+      pieces_.pop_back();
+    }
+    std::vector<Parts> parts(round.size());
+    parallel_for(
+        round.size(), [&](std::size_t i) { parts[i] = split(round[i]); }, 32);
+    for (const Parts& of_one : parts) {
+      for (const Piece& part : of_one.view()) {
+        for (const Corner& corner : part.corners) try_point(corner);
+      }
+    }
+    for (Parts& of_one : parts) {
+      for (Piece& part : of_one.view()) {
+        if (keep(part)) std::push_heap(pieces_.begin(), pieces_.end());
+      }
+    }
+    return round.size();
+  }
+
+  // By turns where the nearest triangle ends and at the longest edge. The former cuts surfaces that
+  // lie in one plane into pieces under one triangle each; the latter lets every piece shrink.
+  [[nodiscard]] Parts split(const Piece& piece) const {
+    Parts parts;
+    if (piece.depth % 2 == 0) parts = cut_where_nearest_ends(piece);
+    if (parts.count == 0) parts = halve(piece);
+    for (Piece& part : parts.view()) {
+      part.depth = piece.depth + 1;
+      part.upper = std::min(piece.upper, bound_of(part));
+    }
+    return parts;
+  }
+
+  // Between two corners, their share of the way from a to b.
+  [[nodiscard]] Corner corner_between(const Corner& a, const Corner& b, double share) const {
+    Corner middle;
+    middle.point = a.point + (b.point - a.point) * share;
+    evaluate(middle, std::min(surface_.distance_to(middle.point, a.nearest),
+                              surface_.distance_to(middle.point, b.nearest)));
+    return middle;
+  }
+
+  [[nodiscard]] Parts halve(const Piece& piece) const {
+    std::size_t opposite = 0;  // the corner across the longest edge
+    double longest = -1;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double length =
+          (piece.corners[(i + 1) % 3].point - piece.corners[(i + 2) % 3].point).sqrnorm();
+      if (length > longest) {
+        longest = length;
+        opposite = i;
+      }
+    }
+    const Corner& tip = piece.corners[opposite];
+    const Corner& left = piece.corners[(opposite + 1) % 3];
+    const Corner& right = piece.corners[(opposite + 2) % 3];
+    const Corner middle = corner_between(left, right, 0.5);
+    Parts parts;
+    parts.add({middle, tip, left});
+    parts.add({middle, right, tip});
+    return parts;
+  }
+
+  // At a plane that bounds the prism over the triangle nearest to a corner, if one runs through
+  // the piece; nothing if none does.
+  [[nodiscard]] Parts cut_where_nearest_ends(const Piece& piece) const {
+    Column heights{};  // of the corners over the plane
+    double deepest = 1e-9 * std::max((piece.corners[1].point - piece.corners[0].point).norm(),
+                                     (piece.corners[2].point - piece.corners[0].point).norm());
+    bool found = false;
+    for (const Corner& corner : piece.corners) {
+      for (std::size_t edge = 0; edge < 3; ++edge) {
+        const Column over = heights_over(piece, surface_.prism_side(corner.nearest, edge));
+        const double depth = std::min(greatest(over), -std::min({over[0], over[1], over[2]}));
+        if (!(depth > deepest)) continue;
+        deepest = depth;
+        heights = over;
+        found = true;
+      }
+    }
+    return found ? cut(piece, heights) : Parts{};
+  }
+
+  [[nodiscard]] static Column heights_over(const Piece& piece, const Plane& plane) {
+    Column heights{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      heights[i] = dot(plane.normal, piece.corners[i].point - plane.point);
+    }
+    return heights;
+  }
+
+  // Where the heights, linear on the piece, are zero. Precondition: some are above, some below.
+  [[nodiscard]] Parts cut(const Piece& piece, const Column& heights) const {
+    const int above = static_cast<int>(
+        std::count_if(heights.begin(), heights.end(), [](double height) { return height > 0; }));
+    std::size_t tip = 0;  // the corner that is alone on its side
+    for (std::size_t i = 0; i < 3; ++i) {
+      if ((heights[i] > 0) == (above == 1)) tip = i;
+    }
+    const std::size_t left = (tip + 1) % 3;
+    const std::size_t right = (tip + 2) % 3;
+    const auto on_edge_to = [&](std::size_t other) {
+      return corner_between(piece.corners[tip], piece.corners[other],
+                            heights[tip] / (heights[tip] - heights[other]));
+    };
+    const Corner a = on_edge_to(left);
+    const Corner b = on_edge_to(right);
+    Parts parts;
+    parts.add({piece.corners[tip], a, b});
+    parts.add({a, piece.corners[left], piece.corners[right]});
+    parts.add({a, piece.corners[right], b});
+    return parts;
+  }
+
+  std::span<const Vec3> positions_;
+  std::span<const Triangle> triangles_;
+  std::span<const double> reach_;
+  const SpatialIndex& surface_;
+  const FarthestQuery& query_;
+  std::vector<Corner> corners_;  // of the triangles, where evaluated
+  std::vector<Piece> pieces_;    // a heap once the triangles are opened
+  std::uint64_t numbered_ = 0;
+  FarthestPoint best_;
+  double closed_ = 0;  // the greatest bound of what was not looked into
+};
+
+}  // namespace
+
+double least_greatest_mean(const std::array<Column, 3>& columns) {
+  const auto& [a, b, c] = columns;
+  double least = std::min({least_mix(a, b), least_mix(b, c), least_mix(c, a)});
+  // the weights that make all three entries equal, by Cramer's rule; any weights give a bound
+  const auto minor = [](const Column& p, const Column& q) {
+    return (p[0] * q[1] - p[1] * q[0]) + (p[1] * q[2] - p[2] * q[1]) + (p[2] * q[0] - p[0] * q[2]);
+  };
+  const Column weights = {minor(b, c), minor(c, a), minor(a, b)};
+  const double total = weights[0] + weights[1] + weights[2];
+  const bool mixes = weights[0] / total > 0 && weights[1] / total > 0 && weights[2] / total > 0;
+  if (!mixes) return least;
+  Column mix{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    mix[i] = (weights[0] * a[i] + weights[1] * b[i] + weights[2] * c[i]) / total;
+  }
+  return std::min(least, greatest(mix));
+}
+
+FarthestPoint farthest_point(std::span<const Vec3> positions, std::span<const Triangle> here,
+                             std::span<const double> reach, const SpatialIndex& surface,
+                             const FarthestQuery& query) {
+  check(reach.size() == here.size(), "one reach a triangle");
+  return BranchAndBound(positions, here, reach, surface, query).run();
+}
+
+}  // namespace triglyph
