@@ -1,11 +1,14 @@
+#include <algorithm>
 #include <iostream>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "cli/app.h"
 #include "cli/options.h"
 #include "cli/verbs.h"
 #include "engine/mesh/mesh_file.h"
-#include "engine/metric/hausdorff.h"
+#include "engine/metric/comparison.h"
 #include "manifests/run.h"
 
 namespace triglyph {
@@ -14,38 +17,44 @@ namespace {
 struct MeasureArguments {
   std::filesystem::path original;
   std::filesystem::path marked;
+  std::vector<std::string> metrics;
+  double tolerance = kHausdorffTolerance;
   bool json = false;
   MachineArguments machine;
+
+  [[nodiscard]] bool wants_all() const {
+    return std::find(metrics.begin(), metrics.end(), "all") != metrics.end();
+  }
 };
+
+// The metrics asked for; by default and for "all" those that these meshes have.
+std::vector<std::string> chosen_metrics(const MeasureArguments& arguments, bool same_triangles) {
+  if (!arguments.metrics.empty() && !arguments.wants_all()) return arguments.metrics;
+  std::vector<std::string> chosen = {"hausdorff", "displacement"};
+  if (arguments.wants_all()) chosen = strings(metric_names());
+  std::erase_if(chosen, [&](const std::string& metric) {
+    return needs_same_triangles(metric) && !same_triangles;
+  });
+  return chosen;
+}
 
 int run_measure(const MeasureArguments& arguments) {
   const MeshFile original = MeshFile::open(arguments.original);
   const MeshFile marked = MeshFile::open(arguments.marked);
   const Mesh& first = original.mesh();
   const Mesh& second = marked.mesh();
-  const bool same =
-      first.triangles == second.triangles && first.positions.size() == second.positions.size();
-  const double diagonal = box_diagonal(first.positions);
-  HausdorffDistance distance;
-  with_threads(arguments.machine.threads(), [&] {
-    distance = same ? hausdorff_of_move(first.triangles, first.positions, second.positions,
-                                        kHausdorffTolerance * diagonal)
-                    : hausdorff(first, second, kHausdorffTolerance * diagonal);
-  });
+  const bool same = have_same_triangles(first, second);
   nlohmann::ordered_json json = {{"original", arguments.original.string()},
                                  {"marked", arguments.marked.string()},
-                                 {"same_connectivity", same},
-                                 {"diagonal", diagonal},
-                                 {"hausdorff_forward", distance.forward.distance},
-                                 {"hausdorff_backward", distance.backward.distance},
-                                 {"hausdorff", distance.symmetric()},
-                                 {"hausdorff_error", distance.error()},
-                                 {"hausdorff_rel_diag", distance.symmetric() / diagonal}};
-  if (same) {
-    const Displacement moved = displacement(first.positions, second.positions);
-    json["displacement_max"] = moved.max;
-    json["displacement_rms"] = moved.rms;
-  }
+                                 {"same_triangles", same},
+                                 {"diagonal", box_diagonal(first.positions)}};
+  with_threads(arguments.machine.threads(), [&] {
+    for (const std::string& metric : chosen_metrics(arguments, same)) {
+      for (const auto& [name, value] : compare(first, second, metric, arguments.tolerance)) {
+        json[name] = value;
+      }
+    }
+  });
   if (arguments.json) {
     std::cout << to_line(json);
   } else {
@@ -61,6 +70,17 @@ void add_measure_verb(CLI::App& app, Action& action) {
   auto arguments = std::make_shared<MeasureArguments>();
   verb->add_option("original", arguments->original, "Mesh")->required();
   verb->add_option("marked", arguments->marked, "Mesh to compare with it")->required();
+  std::vector<std::string> names = strings(metric_names());
+  names.emplace_back("all");
+  verb->add_option(
+          "--metric", arguments->metrics,
+          "Which, separated by commas [hausdorff,displacement]: " + CLI::detail::join(names))
+      ->delimiter(',')
+      ->check(CLI::IsMember(names));
+  verb->add_option("--tolerance", arguments->tolerance,
+                   "Greatest error of the Hausdorff distance, as a share of the diagonal")
+      ->check(CLI::Range(1e-12, 1.0))
+      ->capture_default_str();
   verb->add_flag("--json", arguments->json, "One JSON object");
   arguments->machine.add_threads_to(*verb);
   verb->callback(

@@ -74,17 +74,6 @@ HausdorffDistance hausdorff(const Mesh& first, const Mesh& second, double tolera
   return distance;
 }
 
-Displacement displacement(std::span<const Vec3> before, std::span<const Vec3> after) {
-  check(before.size() == after.size(), "displacements need the same points");
-  if (before.empty()) return {};
-  const auto squared = [&](std::size_t i) { return (after[i] - before[i]).sqrnorm(); };
-  const double largest = parallel_reduce(before.size(), 0.0, squared,
-                                         [](double a, double b) { return std::max(a, b); });
-  const double sum =
-      parallel_reduce(before.size(), 0.0, squared, [](double a, double b) { return a + b; });
-  return {std::sqrt(largest), std::sqrt(sum / static_cast<double>(before.size()))};
-}
-
 double box_diagonal(std::span<const Vec3> points) {
   if (points.empty()) return 0;
   Vec3 low = points[0];

@@ -35,13 +35,6 @@ inline constexpr double kHausdorffTolerance = 1e-6;
 // no triangles. O((s + t) log (s + t)).
 [[nodiscard]] HausdorffDistance hausdorff(const Mesh& first, const Mesh& second, double tolerance);
 
-// Vertex displacements between two positions of the same points, model units.
-struct Displacement {
-  double max = 0;
-  double rms = 0;  // over all points, moved or not
-};
-[[nodiscard]] Displacement displacement(std::span<const Vec3> before, std::span<const Vec3> after);
-
 // Length of the diagonal of the axis-parallel box around the points; 0 for none.
 [[nodiscard]] double box_diagonal(std::span<const Vec3> points);
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
+#include "engine/mesh/symmetric_matrix.h"
 
 namespace triglyph {
 namespace {
@@ -15,18 +15,12 @@ constexpr double kPrecision = 1e-14;
 
 AffineNorm::AffineNorm(const std::array<Vec3, 4>& basis, double plane_below)
     : mean_((basis[0] + basis[1] + basis[2] + basis[3]) / 4) {
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  for (const Vec3& point : basis) {
-    const Vec3 offset = point - mean_;
-    const Eigen::Vector3d arm(offset[0], offset[1], offset[2]);
-    covariance += arm * arm.transpose() / 4;
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
-  for (int i = 0; i < 3; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    const Eigen::Vector3d axis = solver.eigenvectors().col(2 - i);
-    axes_[at] = Vec3(axis[0], axis[1], axis[2]);
-    deviations_[at] = std::sqrt(std::max(0.0, solver.eigenvalues()[2 - i]));
+  SymmetricMatrix covariance;
+  for (const Vec3& point : basis) covariance.add(point - mean_, 0.25);
+  const PrincipalAxes principal = covariance.principal_axes();
+  axes_ = principal.axes;
+  for (std::size_t i = 0; i < 3; ++i) {
+    deviations_[i] = std::sqrt(std::max(0.0, principal.values[i]));
   }
   flatness_ = deviations_[0] > 0 ? deviations_[2] / deviations_[0] : 0;
   straightness_ = deviations_[0] > 0 ? deviations_[1] / deviations_[0] : 0;

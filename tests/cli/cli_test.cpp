@@ -161,11 +161,33 @@ TEST_F(Cli, MeasuresDistances) {
   const Result result = run("measure a.obj o/a.obj --json");
   ASSERT_EQ(result.code, 0);
   const auto json = nlohmann::json::parse(result.out);
-  EXPECT_TRUE(json["same_connectivity"]);
+  EXPECT_TRUE(json["same_triangles"]);
   EXPECT_GT(json["hausdorff"], 0);
   EXPECT_LE(json["hausdorff"], json["displacement_max"]);
   EXPECT_EQ(nlohmann::json::parse(run("measure a.obj a.obj --json").out)["hausdorff"], 0);
   EXPECT_EQ(run("measure a.obj absent.obj").code, 2);
+}
+
+TEST_F(Cli, MeasuresWhatIsAskedFor) {
+  make_sample("a.obj", 3000);
+  make_sample("b.obj", 2000);
+  run("mark a.obj --out o");
+  const auto all = nlohmann::json::parse(run("measure a.obj o/a.obj --metric all --json").out);
+  for (const char* name :
+       {"hausdorff", "displacement_max", "metro_hausdorff", "mrms", "msdm", "msdm2",
+        "roughness_increase", "strain", "normal_deviation_max_degrees", "snr_db"}) {
+    EXPECT_TRUE(all[name].is_number()) << name;
+  }
+  EXPECT_LE(all["metro_hausdorff"], all["hausdorff"].get<double>() + 1e-5);
+  const auto coarse = nlohmann::json::parse(run("measure a.obj b.obj --metric all --json").out);
+  EXPECT_TRUE(coarse.contains("msdm2"));
+  EXPECT_FALSE(coarse.contains("msdm"));
+  const Result refused = run("measure a.obj b.obj --metric strain");
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_NE(refused.err.find("strain"), std::string::npos);
+  EXPECT_EQ(run("measure a.obj b.obj --metric beauty").code, 2);
+  const auto rough = nlohmann::json::parse(run("measure a.obj b.obj --tolerance 0.01 --json").out);
+  EXPECT_LE(rough["hausdorff_error"], 0.01 * rough["diagonal"].get<double>());
 }
 
 TEST_F(Cli, SamplesAreTheSameForTheSameSeed) {

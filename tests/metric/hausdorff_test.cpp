@@ -10,6 +10,7 @@
 #include "engine/base/error.h"
 #include "engine/base/random.h"
 #include "engine/mesh/spatial_index.h"
+#include "engine/metric/deformation.h"
 #include "tests/support/arenas.h"
 #include "tests/support/cgal_hausdorff.h"
 #include "tests/support/remeshing.h"
@@ -223,16 +224,6 @@ TEST(Hausdorff, IsRefusedWithoutFaces) {
   const Mesh points{{Vec3(0, 0, 0)}, {}};
   EXPECT_THROW((void)hausdorff(points, test::flat_grid(1, 1), kTolerance), Error);
   EXPECT_EQ(hausdorff_of_move({}, {}, {}, kTolerance).symmetric(), 0);
-}
-
-TEST(Displacement, IsMaximumAndRootMeanSquare) {
-  const std::vector<Vec3> before(4, Vec3(1, 1, 1));
-  std::vector<Vec3> after = before;
-  after[2] += Vec3(3, 4, 0);
-  const Displacement moved = displacement(before, after);
-  EXPECT_DOUBLE_EQ(moved.max, 5);
-  EXPECT_DOUBLE_EQ(moved.rms, 2.5);
-  EXPECT_THROW((void)displacement(before, {}), std::logic_error);
 }
 
 TEST(BoxDiagonal, IsThatOfTheBox) {

@@ -1,0 +1,253 @@
+#include "engine/metric/sampled_distance.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "engine/base/parallel.h"
+#include "engine/mesh/spatial_index.h"
+#include "engine/metric/edge_graph.h"
+
+namespace triglyph {
+namespace {
+
+// Distances of many points near each other: the last one's triangle bounds the next one's reach.
+class Probe {
+ public:
+  explicit Probe(const SpatialIndex& surface) : surface_(surface) {}
+
+  double distance(const Vec3& point) {
+    const double reach = last_ == kNoTriangle ? std::numeric_limits<double>::infinity()
+                                              : surface_.distance_to(point, last_);
+    const ClosestPoint found = surface_.closest(point, reach);
+    last_ = found.triangle;
+    return found.distance;
+  }
+
+ private:
+  const SpatialIndex& surface_;
+  std::uint32_t last_ = kNoTriangle;
+};
+
+// Weighted sums of distances; samples weigh 1 with Metro, area with MESH.
+struct Sums {
+  double max = 0, weight = 0, first = 0, second = 0;
+  std::uint64_t samples = 0;
+
+  void add(double distance) {
+    max = std::max(max, distance);
+    weight += 1;
+    first += distance;
+    second += distance * distance;
+    ++samples;
+  }
+  [[nodiscard]] DistanceStatistics statistics() const {
+    if (!(weight > 0)) return {};
+    return {max, first / weight, std::sqrt(second / weight), samples};
+  }
+};
+
+Sums join(const Sums& a, const Sums& b) {
+  return {std::max(a.max, b.max), a.weight + b.weight, a.first + b.first, a.second + b.second,
+          a.samples + b.samples};
+}
+
+// Folds what visit(i, probe, sums) adds for i in [0, n).
+template <typename Visit>
+Sums fold(std::size_t n, const SpatialIndex& surface, const Visit& visit) {
+  const std::size_t blocks = (n + kBlock - 1) / kBlock;
+  std::vector<Sums> partial(blocks);
+  parallel_for(blocks, [&](std::size_t b) {
+    Probe probe(surface);
+    const std::size_t end = std::min(n, (b + 1) * kBlock);
+    for (std::size_t i = b * kBlock; i < end; ++i) visit(i, probe, partial[b]);
+  });
+  Sums sums;
+  for (const Sums& part : partial) sums = join(sums, part);
+  return sums;
+}
+
+double area_of(const Mesh& mesh, const Triangle& t) {
+  const Vec3& a = mesh.positions[t[0]];
+  return cross(mesh.positions[t[1]] - a, mesh.positions[t[2]] - a).norm() / 2;
+}
+
+double area_of(const Mesh& mesh) {
+  return parallel_reduce(
+      mesh.triangles.size(), 0.0, [&](std::size_t t) { return area_of(mesh, mesh.triangles[t]); },
+      [](double a, double b) { return a + b; });
+}
+
+std::vector<std::uint32_t> used_points(const Mesh& mesh) {
+  std::vector<bool> is_used(mesh.positions.size(), false);
+  for (const Triangle& triangle : mesh.triangles) {
+    for (const std::uint32_t point : triangle) is_used[point] = true;
+  }
+  std::vector<std::uint32_t> points;
+  for (std::uint32_t p = 0; p < is_used.size(); ++p) {
+    if (is_used[p]) points.push_back(p);
+  }
+  return points;
+}
+
+// Whole samples out of fractions; what is left over goes to the next.
+std::vector<std::uint32_t> whole_samples(std::span<const double> shares) {
+  std::vector<std::uint32_t> counts(shares.size());
+  double carried = 0;
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    carried += shares[i];
+    counts[i] = static_cast<std::uint32_t>(carried);
+    carried -= counts[i];
+  }
+  return counts;
+}
+
+class Metro {
+ public:
+  Metro(const Mesh& mesh, const SpatialIndex& other, double target)
+      : mesh_(mesh), other_(other), target_(target), area_(area_of(mesh)) {}
+
+  DistanceStatistics run() {
+    Sums sums = vertices();
+    const auto vertex_samples = static_cast<double>(sums.samples);
+    const double left = target_ - vertex_samples;
+    if (left > 0 && area_ > 0) {
+      const Sums on_edges = edges(std::sqrt(left / area_));
+      sums = join(sums, on_edges);
+      const double for_faces = left - vertex_samples - static_cast<double>(on_edges.samples);
+      if (for_faces > 0) sums = join(sums, faces(for_faces / area_));
+    }
+    return sums.statistics();
+  }
+
+ private:
+  Sums vertices() {
+    const std::vector<std::uint32_t> points = used_points(mesh_);
+    return fold(points.size(), other_, [&](std::size_t i, Probe& probe, Sums& sums) {
+      sums.add(probe.distance(mesh_.positions[points[i]]));
+    });
+  }
+
+  Sums edges(double samples_a_length) {
+    const std::vector<Edge> edges = edge_graph(mesh_).edges;
+    std::vector<double> shares(edges.size());
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+      shares[e] =
+          samples_a_length * (mesh_.positions[edges[e].to] - mesh_.positions[edges[e].from]).norm();
+    }
+    const std::vector<std::uint32_t> counts = whole_samples(shares);
+    return fold(edges.size(), other_, [&](std::size_t e, Probe& probe, Sums& sums) {
+      const Vec3& from = mesh_.positions[edges[e].from];
+      const Vec3 step = (mesh_.positions[edges[e].to] - from) / (counts[e] + 1.0);
+      for (std::uint32_t i = 1; i <= counts[e]; ++i) sums.add(probe.distance(from + step * i));
+    });
+  }
+
+  Sums faces(double samples_an_area) {
+    std::vector<double> shares(mesh_.triangles.size());
+    for (std::size_t t = 0; t < shares.size(); ++t) {
+      shares[t] = samples_an_area * area_of(mesh_, mesh_.triangles[t]);
+    }
+    const std::vector<std::uint32_t> counts = whole_samples(shares);
+    return fold(counts.size(), other_, [&](std::size_t t, Probe& probe, Sums& sums) {
+      if (counts[t] > 0) similar_triangles(mesh_.triangles[t], counts[t], probe, sums);
+    });
+  }
+
+  // The inner points of a grid of similar triangles that has about so many.
+  void similar_triangles(const Triangle& t, std::uint32_t count, Probe& probe, Sums& sums) const {
+    const auto rows = static_cast<int>((std::sqrt(1 + 8.0 * count) + 5) / 2);
+    const Vec3& corner = mesh_.positions[t[0]];
+    const Vec3 along = (mesh_.positions[t[1]] - corner) / (rows - 1);
+    const Vec3 across = (mesh_.positions[t[2]] - corner) / (rows - 1);
+    for (int i = 1; i <= rows - 2; ++i) {
+      for (int j = 1; j <= rows - 2 - i; ++j) {
+        sums.add(probe.distance(corner + along * i + across * j));
+      }
+    }
+  }
+
+  const Mesh& mesh_;
+  const SpatialIndex& other_;
+  double target_;
+  double area_;
+};
+
+// The distance over a triangle, linear between its corners' distances, and its square, integrated.
+void integrate(const std::array<double, 3>& d, double area, Sums& sums) {
+  const double sum = d[0] + d[1] + d[2];
+  const double squares = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+  sums.weight += area;
+  sums.first += area * sum / 3;
+  sums.second += area * (squares + sum * sum) / 12;
+}
+
+void integrate_face(const Mesh& mesh, const Triangle& t, double step, Probe& probe, Sums& sums) {
+  const std::array<Vec3, 3> corners = {mesh.positions[t[0]], mesh.positions[t[1]],
+                                       mesh.positions[t[2]]};
+  double longest = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    longest = std::max(longest, (corners[(i + 1) % 3] - corners[i]).norm());
+  }
+  const auto rows = static_cast<std::size_t>(std::max(1.0, std::ceil(longest / step)));
+  const auto parts = static_cast<double>(rows);
+  const double area = area_of(mesh, t) / (parts * parts);
+  std::vector<double> last;  // distances of the row before, one more than this row's
+  for (std::size_t i = 0; i <= rows; ++i) {
+    std::vector<double> row(rows - i + 1);
+    for (std::size_t j = 0; j < row.size(); ++j) {
+      const double u = static_cast<double>(i) / parts;
+      const double v = static_cast<double>(j) / parts;
+      row[j] = probe.distance(corners[0] * (1 - u - v) + corners[1] * u + corners[2] * v);
+      sums.max = std::max(sums.max, row[j]);
+      ++sums.samples;
+    }
+    for (std::size_t j = 0; j < row.size() && i > 0; ++j) {
+      integrate({last[j], last[j + 1], row[j]}, area, sums);
+      if (j + 1 < row.size()) integrate({row[j], row[j + 1], last[j + 1]}, area, sums);
+    }
+    last = std::move(row);
+  }
+}
+
+void check_faces(const Mesh& first, const Mesh& second) {
+  if (first.triangles.empty() || second.triangles.empty()) {
+    throw Error(ErrorCode::Usage, {}, "", "a mesh without faces has no distance to another");
+  }
+}
+
+template <typename OneWay>
+TwoWayStatistics both_ways(const Mesh& first, const Mesh& second, const OneWay& one_way) {
+  check_faces(first, second);
+  const auto towards = [&](const Mesh& from, const Mesh& to) {
+    return one_way(from, SpatialIndex(to.positions, to.triangles));
+  };
+  return {towards(first, second), towards(second, first)};
+}
+
+}  // namespace
+
+TwoWayStatistics metro(const Mesh& first, const Mesh& second) {
+  const double target =
+      10.0 * static_cast<double>(std::max(first.triangles.size(), second.triangles.size()));
+  return both_ways(first, second, [&](const Mesh& from, const SpatialIndex& to) {
+    return Metro(from, to, target).run();
+  });
+}
+
+TwoWayStatistics mesh_distance(const Mesh& first, const Mesh& second, double step) {
+  check(step > 0, "samples lie apart");
+  return both_ways(first, second, [&](const Mesh& from, const SpatialIndex& to) {
+    if (!(area_of(from) > 0)) throw Error(ErrorCode::Usage, {}, "", "a mesh without area");
+    return fold(from.triangles.size(), to,
+                [&](std::size_t t, Probe& probe, Sums& sums) {
+                  integrate_face(from, from.triangles[t], step, probe, sums);
+                })
+        .statistics();
+  });
+}
+
+}  // namespace triglyph
