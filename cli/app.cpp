@@ -40,6 +40,7 @@ int run_app(int argc, char** argv) try {
   add_extract_verb(app, action);
   add_verify_verb(app, action);
   add_measure_verb(app, action);
+  add_render_verb(app, action);
   add_sample_verb(app, action);
   add_keygen_verb(app, action);
   try {

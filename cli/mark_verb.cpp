@@ -9,8 +9,10 @@
 #include "cli/app.h"
 #include "cli/options.h"
 #include "cli/screen.h"
+#include "cli/sibling.h"
 #include "cli/verbs.h"
 #include "engine/base/error.h"
+#include "engine/base/parallel.h"
 #include "manifests/run.h"
 
 namespace triglyph {
@@ -33,6 +35,7 @@ struct MarkArguments {
   std::optional<double> max_move_percent;
   double drop_dearest_percent = 0;
   std::filesystem::path records;
+  std::filesystem::path pictures;  // directory
   bool json = false;
   bool detail = false;
   SchemeArguments scheme;
@@ -132,19 +135,40 @@ class RecordPrinter {
   std::ofstream file_;  // a line at a time, so that a run that dies leaves the records it made
 };
 
+// Below the directory for pictures as the marked file is below that for meshes.
+std::filesystem::path picture_of(const Record& record, const MarkArguments& arguments) {
+  std::filesystem::path name = record.job.out.lexically_relative(arguments.out);
+  if (name.empty() || *name.begin() == "..") name = record.job.out.filename();
+  return arguments.pictures / (name.string() + ".png");
+}
+
 int run_mark(const MarkArguments& arguments) {
   const Key key = arguments.key.load();
   const std::size_t total = check_plan(*open_jobs(arguments));
   const auto jobs = open_jobs(arguments);
+  std::optional<RenderBatch> pictures;
+  if (!arguments.pictures.empty()) pictures.emplace(std::vector<std::string>{"--batch"});
   RecordPrinter printer(arguments, total);
   const std::atomic<bool>& stop = interrupt_flag();
   RunOptions options;
   options.memory_bytes = arguments.machine.memory_bytes();
   with_threads(arguments.machine.threads(), [&] {
     run_jobs(
-        *jobs, key, options, [&](const Record& record) { printer.print(record); }, stop);
+        *jobs, key, options,
+        [&](const Record& record) {
+          printer.print(record);
+          if (pictures && record.status == Status::Marked) {
+            pictures->draw(record.job.mesh, record.job.out, picture_of(record, arguments));
+          }
+        },
+        stop);
   });
-  const std::size_t failed = printer.finish();
+  std::size_t failed = printer.finish();
+  if (pictures && stop) pictures->stop();
+  if (pictures && !pictures->finish()) {
+    std::cerr << "triglyph: not all pictures were drawn\n";
+    ++failed;
+  }
   if (stop) return kInterrupted;
   return failed == 0 ? kDone : kSomeFailed;
 }
@@ -204,6 +228,9 @@ void add_mark_verb(CLI::App& app, Action& action) {
       ->capture_default_str();
   verb->add_option("--records", arguments->records, "Write one JSON record a mesh to this file")
       ->type_name("FILE");
+  verb->add_option("--render", arguments->pictures,
+                   "Draw a comparison of every mesh that is marked into this directory")
+      ->type_name("DIR");
   verb->add_flag("--json", arguments->json, "Print the records instead of a table");
   verb->add_flag("--detail", arguments->detail,
                  "Write every unit into the record, for verify --detail [always with iie]");

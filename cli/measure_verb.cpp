@@ -7,6 +7,7 @@
 #include "cli/app.h"
 #include "cli/options.h"
 #include "cli/verbs.h"
+#include "engine/base/parallel.h"
 #include "engine/mesh/mesh_file.h"
 #include "engine/metric/comparison.h"
 #include "manifests/run.h"

@@ -7,6 +7,7 @@
 #include "cli/verbs.h"
 #include "engine/base/error.h"
 #include "engine/base/output_file.h"
+#include "engine/base/parallel.h"
 #include "engine/base/random.h"
 #include "engine/mesh/export_mesh.h"
 #include "engine/mesh/sample_shapes.h"

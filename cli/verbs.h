@@ -15,6 +15,7 @@ void add_mark_verb(CLI::App& app, Action& action);
 void add_extract_verb(CLI::App& app, Action& action);
 void add_verify_verb(CLI::App& app, Action& action);
 void add_measure_verb(CLI::App& app, Action& action);
+void add_render_verb(CLI::App& app, Action& action);
 void add_sample_verb(CLI::App& app, Action& action);
 
 }  // namespace triglyph

@@ -6,6 +6,7 @@
 #include "cli/options.h"
 #include "cli/verbs.h"
 #include "engine/base/error.h"
+#include "engine/base/parallel.h"
 #include "manifests/run.h"
 #include "manifests/verify.h"
 

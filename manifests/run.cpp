@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <exception>
-#include <thread>
 #include <variant>
 
 #include <tbb/flow_graph.h>
-#include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
 #include "manifests/pipeline.h"
@@ -215,15 +213,6 @@ class MarkGraph {
 void run_jobs(JobSource& jobs, const Key& key, const RunOptions& options,
               const std::function<void(const Record&)>& on_record, const std::atomic<bool>& stop) {
   MarkGraph(jobs, key, options, on_record, stop).run();
-}
-
-void with_threads(int threads, const std::function<void()>& work) {
-  const int count =
-      threads > 0 ? threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                  static_cast<std::size_t>(count));
-  tbb::task_arena arena(count);
-  arena.execute(work);
 }
 
 }  // namespace triglyph

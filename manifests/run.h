@@ -23,7 +23,4 @@ struct RunOptions {
 void run_jobs(JobSource& jobs, const Key& key, const RunOptions& options,
               const std::function<void(const Record&)>& on_record, const std::atomic<bool>& stop);
 
-// Runs work with this many threads (0: all that the machine offers) and isolates nothing else.
-void with_threads(int threads, const std::function<void()>& work);
-
 }  // namespace triglyph

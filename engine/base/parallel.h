@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <thread>
 #include <utility>
 #include <vector>
 
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 #include <tbb/parallel_sort.h>
@@ -88,6 +90,18 @@ void parallel_pair(const First& first, const Second& second) {
 template <typename Work>
 void run_isolated(const Work& work) {
   tbb::this_task_arena::isolate(work);
+}
+
+// Runs `work` in an arena of so many threads, which no other thread of the process exceeds
+// meanwhile; 0: as many as the machine has.
+template <typename Work>
+void with_threads(int threads, const Work& work) {
+  const int count =
+      threads > 0 ? threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  static_cast<std::size_t>(count));
+  tbb::task_arena arena(count);
+  arena.execute(work);
 }
 
 }  // namespace triglyph

@@ -6,6 +6,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/output_file.h"
+#include "engine/base/parallel.h"
 #include "engine/mesh/export_mesh.h"
 #include "manifests/pipeline.h"
 #include "tests/support/attacks.h"

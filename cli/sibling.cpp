@@ -1,0 +1,118 @@
+#include "cli/sibling.h"
+
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <sstream>
+
+#include <fcntl.h>
+#include <nlohmann/json.hpp>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "engine/base/error.h"
+
+namespace triglyph {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kName = "triglyph-render";
+
+bool is_executable(const fs::path& path) {
+  return access(path.c_str(), X_OK) == 0;
+}
+
+// As exec wants them; views of the strings.
+std::vector<char*> argument_vector(const fs::path& program, const std::vector<std::string>& rest) {
+  std::vector<char*> all{const_cast<char*>(program.c_str())};
+  for (const std::string& argument : rest) all.push_back(const_cast<char*>(argument.c_str()));
+  all.push_back(nullptr);
+  return all;
+}
+
+[[noreturn]] void fail_to_start(const fs::path& program) {
+  throw Error(ErrorCode::Usage, program, "", std::strerror(errno));
+}
+
+}  // namespace
+
+fs::path find_renderer() {
+  std::error_code ignored;
+  const fs::path self = fs::read_symlink("/proc/self/exe", ignored);
+  const fs::path beside = self.parent_path() / kName;
+  if (!self.empty() && is_executable(beside)) return beside;
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path == nullptr ? "" : path);
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const fs::path candidate = fs::path(folder) / kName;
+    if (!folder.empty() && is_executable(candidate)) return candidate;
+  }
+  throw Error(ErrorCode::Usage, {}, "",
+              "pictures need triglyph-render, which is neither beside triglyph nor in PATH");
+}
+
+void become_renderer(const std::vector<std::string>& arguments) {
+  const fs::path program = find_renderer();
+  execv(program.c_str(), argument_vector(program, arguments).data());
+  fail_to_start(program);
+}
+
+RenderBatch::RenderBatch(const std::vector<std::string>& arguments) {
+  const fs::path program = find_renderer();
+  std::vector<char*> all = argument_vector(program, arguments);
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) fail_to_start(program);
+  process_ = fork();
+  if (process_ < 0) {
+    close(ends[0]);
+    close(ends[1]);
+    fail_to_start(program);
+  }
+  if (process_ == 0) {
+    // an interrupt is the run's, which then stops its renderer
+    std::signal(SIGINT, SIG_IGN);
+    dup2(ends[0], STDIN_FILENO);
+    dup2(STDERR_FILENO, STDOUT_FILENO);  // standard output is the run's
+    execv(program.c_str(), all.data());
+    _exit(127);
+  }
+  close(ends[0]);
+  pipe_ = ends[1];
+  std::signal(SIGPIPE, SIG_IGN);  // a renderer that died is told by finish()
+}
+
+RenderBatch::~RenderBatch() {
+  (void)finish();
+}
+
+void RenderBatch::draw(const fs::path& original, const fs::path& marked, const fs::path& out) {
+  const nlohmann::json job = {
+      {"original", original.string()}, {"marked", marked.string()}, {"out", out.string()}};
+  const std::string line =
+      job.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  std::size_t sent = 0;
+  while (sent < line.size()) {
+    const ssize_t count = write(pipe_, line.data() + sent, line.size() - sent);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return;
+    sent += static_cast<std::size_t>(count);
+  }
+}
+
+void RenderBatch::stop() const {
+  if (process_ >= 0) kill(process_, SIGTERM);
+}
+
+bool RenderBatch::finish() {
+  if (process_ < 0) return true;
+  close(pipe_);
+  int status = 0;
+  while (waitpid(process_, &status, 0) < 0 && errno == EINTR) {
+  }
+  process_ = -1;
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+}  // namespace triglyph

@@ -1,0 +1,10 @@
+// The command line of triglyph-render.
+#pragma once
+
+namespace triglyph {
+
+// Exit codes as triglyph's: 0 done, 1 fatal, 2 usage or an unreadable mesh, 3 some pictures of a
+// batch failed.
+[[nodiscard]] int run_render_app(int argc, char** argv);
+
+}  // namespace triglyph

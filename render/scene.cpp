@@ -1,0 +1,72 @@
+#include "render/scene.h"
+
+#include <cmath>
+
+#include "engine/base/parallel.h"
+
+namespace triglyph {
+namespace {
+
+// Twice the area long.
+std::vector<Vec3> area_normals(const Mesh& mesh) {
+  std::vector<Vec3> normals(mesh.triangles.size());
+  parallel_for(
+      normals.size(),
+      [&](std::size_t t) {
+        const Triangle& corners = mesh.triangles[t];
+        const Vec3& a = mesh.positions[corners[0]];
+        normals[t] = cross(mesh.positions[corners[1]] - a, mesh.positions[corners[2]] - a);
+      },
+      kBlock);
+  return normals;
+}
+
+Vec3 unit(const Vec3& v) {
+  const double length = v.norm();
+  return length > 0 ? v / length : Vec3(0, 0, 0);
+}
+
+}  // namespace
+
+Scene::Scene(const Mesh& seen, bool is_flat)
+    : mesh(seen), normals(is_flat ? flat_normals(seen) : smooth_normals(seen)) {}
+
+std::vector<Vec3> flat_normals(const Mesh& mesh) {
+  std::vector<Vec3> normals = area_normals(mesh);
+  for (Vec3& normal : normals) normal = unit(normal);
+  return normals;
+}
+
+std::vector<Vec3> smooth_normals(const Mesh& mesh) {
+  const std::vector<Vec3> of_faces = area_normals(mesh);
+  std::vector<std::uint32_t> offsets(mesh.positions.size() + 1, 0);
+  for (const Triangle& triangle : mesh.triangles) {
+    for (const std::uint32_t point : triangle) ++offsets[point + 1];
+  }
+  for (std::size_t p = 0; p < mesh.positions.size(); ++p) offsets[p + 1] += offsets[p];
+  std::vector<std::uint32_t> faces(3 * mesh.triangles.size());
+  std::vector<std::uint32_t> next(offsets.begin(), offsets.end() - 1);
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (const std::uint32_t point : mesh.triangles[t]) faces[next[point]++] = t;
+  }
+  const double least_cosine = std::cos(kCreaseDegrees * M_PI / 180);
+  std::vector<Vec3> normals(3 * mesh.triangles.size());
+  parallel_for(
+      mesh.triangles.size(),
+      [&](std::size_t t) {
+        const Vec3 own = unit(of_faces[t]);
+        for (std::size_t c = 0; c < 3; ++c) {
+          const std::uint32_t point = mesh.triangles[t][c];
+          Vec3 sum(0, 0, 0);
+          for (std::uint32_t i = offsets[point]; i < offsets[point + 1]; ++i) {
+            const Vec3& other = of_faces[faces[i]];
+            if (dot(own, other) >= least_cosine * other.norm()) sum += other;
+          }
+          normals[3 * t + c] = unit(sum);
+        }
+      },
+      1024);
+  return normals;
+}
+
+}  // namespace triglyph
