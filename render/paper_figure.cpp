@@ -54,6 +54,7 @@ class PaperFigure {
         camera_(camera_for(mesh, options)),
         mark_options_(default_mark_options(scheme, true)) {
     mark_options_.scheme_options = fixed_for(mesh, mark_options_.scheme_options);
+    if (scheme == "iie") camera_.half_height += mark_options_.scheme_options.radius;  // for balls
   }
 
   Image draw() {

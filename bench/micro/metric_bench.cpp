@@ -5,7 +5,7 @@
 #include "engine/mesh/halfedges.h"
 #include "engine/mesh/mesh_file.h"
 #include "engine/mesh/sample_shapes.h"
-#include "engine/metric/hausdorff.h"
+#include "engine/metric/comparison.h"
 #include "tests/support/cgal_hausdorff.h"
 #include "tests/support/remeshing.h"
 
@@ -82,6 +82,14 @@ void BM_DecimatedBunnyCgal(benchmark::State& state) {
   }
 }
 
+// Every metric by name, on the bunny and its marked copy.
+void BM_Metric(benchmark::State& state) {
+  const std::string_view name = metric_names()[static_cast<std::size_t>(state.range(0))];
+  for (auto _ : state) benchmark::DoNotOptimize(compare(bunny(), marked_bunny(), name));
+  state.SetLabel(std::string(name));
+}
+
+BENCHMARK(BM_Metric)->DenseRange(0, 9)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(BM_HausdorffOfMove)
     ->Arg(10000)
     ->Arg(100000)

@@ -12,7 +12,7 @@
 namespace triglyph {
 namespace {
 
-constexpr std::size_t kTrianglesPerRound = 16384;
+constexpr std::size_t kTrianglesPerRound = 2048;
 constexpr std::size_t kPiecesPerRound = 1024;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -27,8 +27,9 @@ struct Corner {
 // A triangle of the surface or a part of one.
 struct Piece {
   std::array<Corner, 3> corners;
-  double upper = kInfinity;  // no point of it is farther
-  std::uint64_t number = 0;  // breaks ties
+  std::uint32_t middle = kNoTriangle;  // nearest to the middle of the triangle it is a part of
+  double upper = kInfinity;            // no point of it is farther
+  std::uint64_t number = 0;            // breaks ties
   int depth = 0;
 
   // the order of a heap whose top is the piece that may hold the farthest point
@@ -67,6 +68,23 @@ double least_mix(const Column& a, const Column& b) {
     if (share > 0 && share < 1) least = std::min(least, greatest_of_mix(a, b, share));
   }
   return least;
+}
+
+// The greatest entry of the mix of three columns whose entries are equal, by Cramer's rule;
+// infinity if its weights are not all positive.
+double level_mix(const Column& a, const Column& b, const Column& c) {
+  const auto minor = [](const Column& p, const Column& q) {
+    return (p[0] * q[1] - p[1] * q[0]) + (p[1] * q[2] - p[2] * q[1]) + (p[2] * q[0] - p[0] * q[2]);
+  };
+  const Column weights = {minor(b, c), minor(c, a), minor(a, b)};
+  const double total = weights[0] + weights[1] + weights[2];
+  const bool mixes = weights[0] / total > 0 && weights[1] / total > 0 && weights[2] / total > 0;
+  if (!mixes) return kInfinity;
+  Column mix{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    mix[i] = (weights[0] * a[i] + weights[1] * b[i] + weights[2] * c[i]) / total;
+  }
+  return greatest(mix);
 }
 
 class BranchAndBound {
@@ -123,6 +141,7 @@ class BranchAndBound {
   void open_some(std::span<const std::uint32_t> round) {
     evaluate_corners(round);
     std::vector<Piece> opened(round.size());
+    std::vector<Corner> middles(round.size(), Corner{Vec3(0, 0, 0), 0, kNoTriangle});
     parallel_for(
         round.size(),
         [&](std::size_t i) {
@@ -131,9 +150,24 @@ class BranchAndBound {
             piece.corners[c] = corners_[triangles_[round[i]][c]];
           }
           piece.upper = std::min(reach_[round[i]], bound_of(piece));
+          if (is_open(piece.upper)) middles[i] = look_at_middle(piece);
         },
         256);
+    for (const Corner& middle : middles) try_point(middle);
     for (Piece& piece : opened) keep(piece);
+  }
+
+  // Finds what is nearest to the middle of a piece, and bounds the piece with it.
+  [[nodiscard]] Corner look_at_middle(Piece& piece) const {
+    const auto& [a, b, c] = piece.corners;
+    Corner middle;
+    middle.point = (a.point + b.point + c.point) / 3;
+    evaluate(middle, std::min({surface_.distance_to(middle.point, a.nearest),
+                               surface_.distance_to(middle.point, b.nearest),
+                               surface_.distance_to(middle.point, c.nearest)}));
+    piece.middle = middle.nearest;
+    piece.upper = std::min(piece.upper, bound_of(piece));
+    return middle;
   }
 
   // Distances of the corners that have none yet.
@@ -179,15 +213,22 @@ class BranchAndBound {
     if (a.nearest == b.nearest && b.nearest == c.nearest) {
       return std::max({a.distance, b.distance, c.distance});
     }
-    std::array<Column, 3> columns{};
-    for (std::size_t j = 0; j < 3; ++j) {
+    std::array<Column, 4> columns{};
+    std::array<std::uint32_t, 4> triangles{};
+    std::size_t count = 0;
+    for (const std::uint32_t triangle : {a.nearest, b.nearest, c.nearest, piece.middle}) {
+      const std::span<const std::uint32_t> known(triangles.data(), count);
+      const bool is_known = std::find(known.begin(), known.end(), triangle) != known.end();
+      if (triangle == kNoTriangle || is_known) continue;
       for (std::size_t i = 0; i < 3; ++i) {
         const Corner& corner = piece.corners[i];
-        columns[j][i] =
-            i == j ? corner.distance : surface_.distance_to(corner.point, piece.corners[j].nearest);
+        columns[count][i] = corner.nearest == triangle
+                                ? corner.distance
+                                : surface_.distance_to(corner.point, triangle);
       }
+      triangles[count++] = triangle;
     }
-    return least_greatest_mean(columns);
+    return least_greatest_mean({columns.data(), count});
   }
 
   // Puts a piece on the list if it may hold the farthest point.
@@ -233,6 +274,7 @@ class BranchAndBound {
     if (parts.count == 0) parts = halve(piece);
     for (Piece& part : parts.view()) {
       part.depth = piece.depth + 1;
+      part.middle = piece.middle;
       part.upper = std::min(piece.upper, bound_of(part));
     }
     return parts;
@@ -333,22 +375,17 @@ class BranchAndBound {
 
 }  // namespace
 
-double least_greatest_mean(const std::array<Column, 3>& columns) {
-  const auto& [a, b, c] = columns;
-  double least = std::min({least_mix(a, b), least_mix(b, c), least_mix(c, a)});
-  // the weights that make all three entries equal, by Cramer's rule; any weights give a bound
-  const auto minor = [](const Column& p, const Column& q) {
-    return (p[0] * q[1] - p[1] * q[0]) + (p[1] * q[2] - p[2] * q[1]) + (p[2] * q[0] - p[0] * q[2]);
-  };
-  const Column weights = {minor(b, c), minor(c, a), minor(a, b)};
-  const double total = weights[0] + weights[1] + weights[2];
-  const bool mixes = weights[0] / total > 0 && weights[1] / total > 0 && weights[2] / total > 0;
-  if (!mixes) return least;
-  Column mix{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    mix[i] = (weights[0] * a[i] + weights[1] * b[i] + weights[2] * c[i]) / total;
+double least_greatest_mean(std::span<const Column> columns) {
+  double least = greatest(columns[0]);
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    for (std::size_t j = i + 1; j < columns.size(); ++j) {
+      least = std::min(least, least_mix(columns[i], columns[j]));
+      for (std::size_t k = j + 1; k < columns.size(); ++k) {
+        least = std::min(least, level_mix(columns[i], columns[j], columns[k]));
+      }
+    }
   }
-  return std::min(least, greatest(mix));
+  return least;
 }
 
 FarthestPoint farthest_point(std::span<const Vec3> positions, std::span<const Triangle> here,

@@ -4,8 +4,8 @@
 // The distance to a triangle is a convex function, and so is any weighted mean of distances to
 // several triangles, which is never below the least of them. So on a piece of the surface the
 // distance is nowhere greater than the greatest such mean at the piece's corners, whatever the
-// weights. The triangles are those nearest to the corners; the best weights are the solution of a
-// 3 x 3 matrix game. A piece that crosses from one nearest triangle to the next is thus bounded to
+// weights. The triangles are those nearest to the corners and to the middle; the best weights solve
+// a matrix game. A piece that crosses from one nearest triangle to the next is thus bounded to
 // second order of its size.
 //
 // This work is based on:
@@ -47,8 +47,8 @@ struct FarthestQuery {
                                            std::span<const double> reach,
                                            const SpatialIndex& surface, const FarthestQuery& query);
 
-// The least weighted mean of a matrix's columns, as measured by its greatest entry: an upper bound
-// that is at most a rounding above the value of the matrix game.
-[[nodiscard]] double least_greatest_mean(const std::array<std::array<double, 3>, 3>& columns);
+// The least, over weighted means of the columns, of a mean's greatest entry: the value of a matrix
+// game. Precondition: at least one column. O(columns^3).
+[[nodiscard]] double least_greatest_mean(std::span<const std::array<double, 3>> columns);
 
 }  // namespace triglyph

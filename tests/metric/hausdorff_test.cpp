@@ -185,8 +185,8 @@ TEST(Hausdorff, SaysHowFarItGotIfItMayNotSplitEnough) {
 
 TEST(LeastGreatestMean, IsTheValueOfTheMatrixGame) {
   for (std::uint64_t trial = 0; trial < 200; ++trial) {
-    std::array<std::array<double, 3>, 3> columns{};
-    for (std::size_t j = 0; j < 3; ++j) {
+    std::array<std::array<double, 3>, 4> columns{};
+    for (std::size_t j = 0; j < 4; ++j) {
       const Vec3 entries = random_point(20 + j, trial, 2);
       columns[j] = {entries[0], entries[1], entries[2]};
     }
@@ -203,7 +203,10 @@ TEST(LeastGreatestMean, IsTheValueOfTheMatrixGame) {
         sampled = std::min(sampled, greatest);
       }
     }
-    const double value = least_greatest_mean(columns);
+    const double value = least_greatest_mean(std::span(columns).first(3));
+    EXPECT_LE(least_greatest_mean(columns), value);
+    EXPECT_EQ(least_greatest_mean(std::span(columns).first(1)),
+              *std::max_element(columns[0].begin(), columns[0].end()));
     EXPECT_LE(value, sampled + 1e-12);
     EXPECT_GE(value, sampled - 0.05);
   }
