@@ -41,12 +41,12 @@ std::vector<char*> argument_vector(const fs::path& program, const std::vector<st
 fs::path find_renderer() {
   std::error_code ignored;
   const fs::path self = fs::read_symlink("/proc/self/exe", ignored);
-  const fs::path beside = self.parent_path() / kName;
+  fs::path beside = self.parent_path() / kName;
   if (!self.empty() && is_executable(beside)) return beside;
   const char* path = std::getenv("PATH");
   std::istringstream folders(path == nullptr ? "" : path);
   for (std::string folder; std::getline(folders, folder, ':');) {
-    const fs::path candidate = fs::path(folder) / kName;
+    fs::path candidate = fs::path(folder) / kName;
     if (!folder.empty() && is_executable(candidate)) return candidate;
   }
   throw Error(ErrorCode::Usage, {}, "",

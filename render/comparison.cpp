@@ -265,6 +265,7 @@ Image draw_comparison(const Mesh& original, const Mesh& marked,
   }
   Comparison comparison(original, marked, options);
   std::vector<Panel> drawn;
+  drawn.reserve(panels.size());
   for (const std::string& name : panels) drawn.push_back(comparison.panel(name));
   return arrange(drawn, options.background);
 }

@@ -213,7 +213,7 @@ struct RayCaster::Tracer {
     if (scene.normals.size() == scene.mesh.triangles.size()) {
       normal = scene.normals[face];
     } else {
-      for (std::size_t c = 0; c < 3; ++c) normal += scene.normals[3 * face + c] * shares[c];
+      for (std::size_t c = 0; c < 3; ++c) normal += scene.normals[std::size_t{3} * face + c] * shares[c];
       const double length = normal.norm();
       if (length > 0) normal /= length;
     }

@@ -181,8 +181,10 @@ std::vector<std::uint32_t> solve_transport(const TransportProblem& problem) {
   TransportState state(problem);
   if (has_many_ties(state)) match_ties(state);
   bid_in_turns(state, 0, kBidsPerWord);
-  const bool is_served = serve_all(state, kPatience * state.words.size());
-  if (!is_served) {
+  // An auction would leave prices on units that end up free, where only 0 will do.
+  const std::size_t patience =
+      state.is_choice ? std::numeric_limits<std::size_t>::max() : kPatience * state.words.size();
+  if (!serve_all(state, patience)) {
     auction_prices(state);
     serve_all(state, std::numeric_limits<std::size_t>::max());
   }

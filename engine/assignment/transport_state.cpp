@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kSpareCandidates = 16;
+constexpr std::uint64_t kSparingly = 2;  // units a copy from which most units are left alone
 
 }  // namespace
 
@@ -60,7 +61,8 @@ void TransportState::count_copies(const TransportProblem& problem) {
     check(copies - open < kNobody, "copies that find no unit are counted in 32 bits");
     reserve_size = reserve_left = static_cast<std::uint32_t>(copies - open);
   }
-  if (copies < open) {
+  is_choice = copies * kSparingly <= open;
+  if (copies < open && !is_choice) {
     zeros.assign(problem.costs.units, 0.0F);
     names.push_back(kNoWord);
     words.push_back({zeros, static_cast<std::uint32_t>(open - copies)});
@@ -74,6 +76,13 @@ void TransportState::count_copies(const TransportProblem& problem) {
 // then looks like any other. With units to spare only the cheapest, as many as there are copies,
 // are treated so; the unwanted word takes the rest as they are.
 void TransportState::set_first_prices(const TransportProblem& problem) {
+  if (is_choice) {
+    prices.assign(problem.costs.units, kInfinity);
+    for (std::size_t unit = 0; unit < prices.size(); ++unit) {
+      if (problem.is_unit_open[unit] != 0) prices[unit] = 0;
+    }
+    return;
+  }
   std::vector<float> least(problem.costs.units, std::numeric_limits<float>::infinity());
   const std::size_t wanted_words = words.size() - (zeros.empty() ? 0 : 1);
   parallel_blocks(

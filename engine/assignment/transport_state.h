@@ -28,9 +28,9 @@ struct TransportWord {
   std::vector<std::uint32_t> held{};  // units
 };
 
-// Units nobody wants are the copies of one more word that costs nothing; copies that find no unit
-// go to a reserve that costs nothing. Both sides are then served completely and the dual values
-// have no signs to keep.
+// Units nobody wants are the copies of one more word that costs nothing, unless they are most of
+// the units; copies that find no unit go to a reserve that costs nothing. Both sides are then
+// served completely and the dual values have no signs to keep.
 struct TransportState {
   // Nobody holds anything; values and prices are as good as can be told from single units and
   // words. O(units * words), in parallel.
@@ -53,6 +53,9 @@ struct TransportState {
   std::vector<double> prices;        // of units; infinite for those left out
   std::vector<std::uint32_t> owner;  // index in words or kNobody
   std::vector<std::uint32_t> place;  // of a unit among its owner's held
+  // Most units will be left: no word takes them, they stay free at a price of 0 until they are
+  // given away, and then have an owner for good.
+  bool is_choice = false;
   std::uint32_t reserve_size = 0;
   std::uint32_t reserve_left = 0;
   double reserve_price = 0;

@@ -140,6 +140,19 @@ TEST(ExactSolver, AgreesWithRepeatedWords) {
   }
 }
 
+// Most units are left alone: they are then not copies of an unwanted word.
+TEST(ExactSolver, AgreesWhenFewUnitsAreWanted) {
+  for (const CostKind kind : kCostKinds) {
+    for (const std::uint32_t words : {1U, 7U, 40U}) {
+      for (const std::uint32_t total : {40U, 99U, 100U, 101U}) {
+        SCOPED_TRACE(static_cast<int>(kind) * 1000 + static_cast<int>(words + total));
+        expect_agreement(make_integer_costs(kind, 200, words, total),
+                         make_demand(words, total, words + total));
+      }
+    }
+  }
+}
+
 TEST(ExactSolver, AgreesWhenFewPairsArePossible) {
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     const auto units = static_cast<std::uint32_t>(40 + random_bits(seed, 30, 0) % 80);
