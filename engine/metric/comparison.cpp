@@ -52,11 +52,12 @@ Values metro_values(const Mesh& first, const Mesh& second, double) {
 
 Values mrms_values(const Mesh& first, const Mesh& second, double) {
   const double diagonal = box_diagonal(first.positions);
-  const TwoWayStatistics statistics = mesh_distance(first, second, kMeshStep * diagonal);
+  const double greater = std::max(diagonal, box_diagonal(second.positions));
+  const TwoWayStatistics statistics = mesh_distance(first, second, kMeshStep * greater);
   Values values = two_way_values("mesh", statistics);
   const double mrms = std::max(statistics.forward.rms, statistics.backward.rms);
   values.push_back({"mrms", mrms});
-  values.push_back({"mrms_rel_diag", mrms / diagonal});
+  values.push_back({"mrms_rel_diag", diagonal > 0 ? mrms / diagonal : 0});
   return values;
 }
 

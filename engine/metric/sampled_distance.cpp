@@ -14,6 +14,8 @@
 namespace triglyph {
 namespace {
 
+constexpr double kRounding = 1e-15;
+
 // Distances of many points near each other: the last one's triangle bounds the next one's reach.
 class Probe {
  public:
@@ -22,6 +24,8 @@ class Probe {
   double distance(const Vec3& point) {
     const double reach = last_ == kNoTriangle ? std::numeric_limits<double>::infinity()
                                               : surface_.distance_to(point, last_);
+    // on that triangle but for rounding; of many faces on one another the others are not asked
+    if (reach <= kRounding * point.max_abs()) return reach;
     const ClosestPoint found = surface_.closest(point, reach);
     last_ = found.triangle;
     return found.distance;

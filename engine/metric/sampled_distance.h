@@ -39,7 +39,7 @@ struct TwoWayStatistics {
 // distance. ICME (2002).
 [[nodiscard]] TwoWayStatistics mesh_distance(const Mesh& first, const Mesh& second, double step);
 
-// MESH's sampling step, as a share of the diagonal of the first mesh's box.
+// MESH's sampling step, as a share of the diagonal of the larger mesh's box.
 inline constexpr double kMeshStep = 0.005;
 
 }  // namespace triglyph

@@ -89,6 +89,15 @@ TEST(SampledDistances, DoNotDependOnThreads) {
   });
 }
 
+// Each sample would look at every face; broken exporters write such meshes.
+TEST(SampledDistances, PassOverFacesThatLieOnOneAnother) {
+  Mesh pile{{Vec3(0.1, 0.2, 0.3), Vec3(1.3, 0.1, 0.2), Vec3(0.2, 1.1, 0.7)}, {}};
+  pile.triangles.assign(3000, {0, 1, 2});
+  const TwoWayStatistics s = mesh_distance(pile, pile, 0.02);
+  EXPECT_LT(s.forward.max, 1e-14);
+  EXPECT_GT(s.forward.samples, 3'000'000U);
+}
+
 TEST(SampledDistances, AreRefusedWithoutFaces) {
   const Mesh points{{Vec3(0, 0, 0)}, {}};
   EXPECT_THROW((void)metro(points, test::flat_grid(1, 1)), Error);
