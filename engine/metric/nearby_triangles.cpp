@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -9,6 +10,8 @@
 
 namespace triglyph {
 namespace {
+
+constexpr double kCellsAcross = 16;  // of the largest box, at most
 
 struct Box {
   Vec3 low;
@@ -36,9 +39,12 @@ Box swept_box(const Triangle& triangle, std::span<const Vec3> before, std::span<
 // may be taken for a touched one, which keeps a triangle too many and never one too few.
 class TouchedCells {
  public:
-  // Boxes given to touch() are at most `largest` wide.
-  TouchedCells(const Vec3& origin, double largest)
-      : origin_(origin), cell_(largest / kCellsAcross), bits_(kSlots / 64, 0) {}
+  // Room for so many calls of touch() with boxes about as wide as a cell.
+  TouchedCells(const Vec3& origin, double cell, std::size_t boxes)
+      : origin_(origin),
+        cell_(cell),
+        slots_(std::bit_ceil(std::clamp(boxes * kSlotsPerBox, kFewestSlots, kMostSlots))),
+        bits_(slots_ / 64, 0) {}
 
   void touch(const Box& box) {
     visit_slots(cells_of(box), [&](std::size_t slot) {
@@ -57,8 +63,9 @@ class TouchedCells {
   }
 
  private:
-  static constexpr std::size_t kSlots = std::size_t{1} << 20;
-  static constexpr double kCellsAcross = 4;
+  static constexpr std::size_t kSlotsPerBox = 1024;  // few triangles are kept by mistake
+  static constexpr std::size_t kFewestSlots = std::size_t{1} << 16;
+  static constexpr std::size_t kMostSlots = std::size_t{1} << 26;
   static constexpr double kMostCells = 1000;
 
   struct Cells {
@@ -76,7 +83,7 @@ class TouchedCells {
 
   // Visits the slots of some cells until one says true.
   template <typename Visit>
-  static bool visit_slots(const Cells& cells, const Visit& visit) {
+  bool visit_slots(const Cells& cells, const Visit& visit) const {
     for (auto x = whole(cells.low[0]); x <= whole(cells.high[0]); ++x) {
       for (auto y = whole(cells.low[1]); y <= whole(cells.high[1]); ++y) {
         for (auto z = whole(cells.low[2]); z <= whole(cells.high[2]); ++z) {
@@ -89,15 +96,16 @@ class TouchedCells {
 
   [[nodiscard]] static std::int64_t whole(double value) { return static_cast<std::int64_t>(value); }
 
-  [[nodiscard]] static std::size_t slot_of(std::int64_t x, std::int64_t y, std::int64_t z) {
+  [[nodiscard]] std::size_t slot_of(std::int64_t x, std::int64_t y, std::int64_t z) const {
     const std::uint64_t hash = static_cast<std::uint64_t>(x) * 0x9e3779b97f4a7c15ULL ^
                                static_cast<std::uint64_t>(y) * 0xc2b2ae3d27d4eb4fULL ^
                                static_cast<std::uint64_t>(z) * 0x165667b19e3779f9ULL;
-    return static_cast<std::size_t>((hash >> 24) % kSlots);
+    return static_cast<std::size_t>((hash >> 24) & (slots_ - 1));
   }
 
   Vec3 origin_;
   double cell_;
+  std::size_t slots_;
   std::vector<std::uint64_t> bits_;
 };
 
@@ -110,19 +118,24 @@ std::vector<Triangle> nearby_triangles(std::span<const Triangle> triangles,
   std::vector<Box> boxes;
   boxes.reserve(moved.size());
   double largest = 0;
+  double sum = 0;
   Vec3 low = before[moved[0][0]];
   Vec3 high = low;
   for (const Triangle& triangle : moved) {
     boxes.push_back(swept_box(triangle, before, after));
     low.minimize(boxes.back().low);
     high.maximize(boxes.back().high);
-    largest = std::max(largest, (boxes.back().high - boxes.back().low).max());
+    const double width = (boxes.back().high - boxes.back().low).max();
+    largest = std::max(largest, width);
+    sum += width;
   }
   // beyond this, cell numbers would not be exact
   if (!(largest > 0 && (high - low).max() < 1e12 * largest)) {
     return {triangles.begin(), triangles.end()};
   }
-  TouchedCells touched(low, largest);
+  // as wide as most boxes, and not so narrow that the largest touches too many
+  const double cell = std::max(sum / static_cast<double>(moved.size()), largest / kCellsAcross);
+  TouchedCells touched(low, cell, moved.size());
   for (const Box& box : boxes) touched.touch(box);
   return parallel_collect<Triangle>(
       triangles.size(), [&](std::size_t t, std::vector<Triangle>& out) {
