@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/assignment/assignment.h"
 #include "engine/base/error.h"
 
 namespace triglyph {

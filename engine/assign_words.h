@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/mark.h"
+#include "engine/marking.h"
 
 namespace triglyph {
 

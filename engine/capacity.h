@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/mark.h"
+#include "engine/marking.h"
 
 namespace triglyph {
 

@@ -2,7 +2,7 @@
 // rounding and must not turn a face over. Units that fail are put back as they were.
 #pragma once
 
-#include "engine/mark.h"
+#include "engine/marking.h"
 
 namespace triglyph {
 

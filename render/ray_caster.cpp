@@ -6,10 +6,9 @@
 #include <limits>
 #include <new>
 
-#include <embree3/rtcore.h>
-
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
+#include "engine/mesh/embree_device.h"
 #include "render/colours.h"
 
 namespace triglyph {
@@ -18,15 +17,6 @@ namespace {
 constexpr int kLanes = 16;
 constexpr float kBallOpacity = 0.45F;
 constexpr float kEdgeOpacity = 0.55F;
-
-RTCDevice shared_device() {
-  static const struct Device {
-    RTCDevice handle = rtcNewDevice(nullptr);
-    ~Device() { rtcReleaseDevice(handle); }
-  } device;
-  check(device.handle != nullptr, "Embree offers no device");
-  return device.handle;
-}
 
 struct SceneHandle {
   RTCScene handle = nullptr;
@@ -126,8 +116,8 @@ struct RayCaster::Tracer {
   }
 
   void attach_surface() {
-    surface.handle = rtcNewScene(shared_device());
-    RTCGeometry geometry = rtcNewGeometry(shared_device(), RTC_GEOMETRY_TYPE_TRIANGLE);
+    surface.handle = rtcNewScene(embree_device());
+    RTCGeometry geometry = rtcNewGeometry(embree_device(), RTC_GEOMETRY_TYPE_TRIANGLE);
     const std::size_t count = scene.mesh.positions.size();
     auto* points = static_cast<float*>(
         buffer_of(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, 3 * sizeof(float), count));
@@ -146,8 +136,8 @@ struct RayCaster::Tracer {
 
   void attach_balls(std::span<const Ball> list, SceneHandle& target) const {
     if (list.empty()) return;
-    target.handle = rtcNewScene(shared_device());
-    RTCGeometry geometry = rtcNewGeometry(shared_device(), RTC_GEOMETRY_TYPE_SPHERE_POINT);
+    target.handle = rtcNewScene(embree_device());
+    RTCGeometry geometry = rtcNewGeometry(embree_device(), RTC_GEOMETRY_TYPE_SPHERE_POINT);
     auto* spheres = static_cast<float*>(buffer_of(
         geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, 4 * sizeof(float), list.size()));
     for (const Ball& ball : list) {
@@ -213,7 +203,8 @@ struct RayCaster::Tracer {
     if (scene.normals.size() == scene.mesh.triangles.size()) {
       normal = scene.normals[face];
     } else {
-      for (std::size_t c = 0; c < 3; ++c) normal += scene.normals[std::size_t{3} * face + c] * shares[c];
+      for (std::size_t c = 0; c < 3; ++c)
+        normal += scene.normals[std::size_t{3} * face + c] * shares[c];
       const double length = normal.norm();
       if (length > 0) normal /= length;
     }

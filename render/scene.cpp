@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "engine/base/parallel.h"
+#include "engine/mesh/point_faces.h"
 
 namespace triglyph {
 namespace {
@@ -39,16 +40,7 @@ std::vector<Vec3> flat_normals(const Mesh& mesh) {
 
 std::vector<Vec3> smooth_normals(const Mesh& mesh) {
   const std::vector<Vec3> of_faces = area_normals(mesh);
-  std::vector<std::uint32_t> offsets(mesh.positions.size() + 1, 0);
-  for (const Triangle& triangle : mesh.triangles) {
-    for (const std::uint32_t point : triangle) ++offsets[point + 1];
-  }
-  for (std::size_t p = 0; p < mesh.positions.size(); ++p) offsets[p + 1] += offsets[p];
-  std::vector<std::uint32_t> faces(3 * mesh.triangles.size());
-  std::vector<std::uint32_t> next(offsets.begin(), offsets.end() - 1);
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    for (const std::uint32_t point : mesh.triangles[t]) faces[next[point]++] = t;
-  }
+  const PointFaces faces = point_faces(mesh);
   const double least_cosine = std::cos(kCreaseDegrees * M_PI / 180);
   std::vector<Vec3> normals(3 * mesh.triangles.size());
   parallel_for(
@@ -58,8 +50,8 @@ std::vector<Vec3> smooth_normals(const Mesh& mesh) {
         for (std::size_t c = 0; c < 3; ++c) {
           const std::uint32_t point = mesh.triangles[t][c];
           Vec3 sum(0, 0, 0);
-          for (std::uint32_t i = offsets[point]; i < offsets[point + 1]; ++i) {
-            const Vec3& other = of_faces[faces[i]];
+          for (const std::uint32_t face : faces.at(point)) {
+            const Vec3& other = of_faces[face];
             if (dot(own, other) >= least_cosine * other.norm()) sum += other;
           }
           normals[3 * t + c] = unit(sum);

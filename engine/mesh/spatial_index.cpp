@@ -5,10 +5,9 @@
 #include <limits>
 #include <new>
 
-#include <embree3/rtcore.h>
-
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
+#include "engine/mesh/embree_device.h"
 
 namespace triglyph {
 namespace {
@@ -16,17 +15,6 @@ namespace {
 // Coordinates handed to Embree lie in [-1, 1]; rounding them to float moves a corner by less than
 // 2^-24 an axis, Embree's own arithmetic adds a few times that.
 constexpr double kFloatPad = 4e-7;
-
-// One device for the process. note: never rtcNewDevice("threads=..."), which would throttle TBB for
-// every other mesh.
-RTCDevice shared_device() {
-  static const struct Device {
-    RTCDevice handle = rtcNewDevice(nullptr);
-    ~Device() { rtcReleaseDevice(handle); }
-  } device;
-  check(device.handle != nullptr, "Embree offers no device");
-  return device.handle;
-}
 
 float float_above(double value) {
   return std::nextafter(static_cast<float>(value), std::numeric_limits<float>::infinity());
@@ -110,7 +98,7 @@ struct SpatialIndex::Scene {
   }
 
   void attach_triangles() {
-    RTCGeometry geometry = rtcNewGeometry(shared_device(), RTC_GEOMETRY_TYPE_TRIANGLE);
+    RTCGeometry geometry = rtcNewGeometry(embree_device(), RTC_GEOMETRY_TYPE_TRIANGLE);
     // each triangle with corners of its own: a few triangles of a large mesh stay a few
     auto* points = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
                                                                RTC_FORMAT_FLOAT3, 3 * sizeof(float),
@@ -149,7 +137,7 @@ SpatialIndex::SpatialIndex(std::span<const Vec3> positions, std::span<const Tria
   const double half = 0.5 * (high - low).max();
   scene_->scale = half > 0 ? 1 / half : 1;
   run_isolated([&] {
-    scene_->handle = rtcNewScene(shared_device());
+    scene_->handle = rtcNewScene(embree_device());
     scene_->attach_triangles();
     rtcCommitScene(scene_->handle);
   });

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/base/parallel.h"
+#include "engine/mesh/point_faces.h"
 #include "engine/metric/edge_graph.h"
 
 namespace triglyph {
@@ -16,13 +17,8 @@ namespace {
 // Faces as roughness sees them.
 struct Faces {
   std::vector<double> areas;
-  std::vector<double> bends;           // mean of 1 - cos of the angles to the neighbours
-  std::vector<std::uint32_t> offsets;  // of the faces at each point
-  std::vector<std::uint32_t> at_points;
-
-  [[nodiscard]] std::span<const std::uint32_t> at(std::uint32_t point) const {
-    return {at_points.data() + offsets[point], at_points.data() + offsets[point + 1]};
-  }
+  std::vector<double> bends;  // mean of 1 - cos of the angles to the neighbours
+  PointFaces of_points;
 };
 
 Faces faces_of(const Mesh& mesh) {
@@ -49,16 +45,7 @@ Faces faces_of(const Mesh& mesh) {
   for (std::size_t t = 0; t < neighbours.size(); ++t) {
     faces.bends[t] /= std::max(1U, neighbours[t]);
   }
-  faces.offsets.assign(mesh.positions.size() + 1, 0);
-  for (const Triangle& triangle : mesh.triangles) {
-    for (const std::uint32_t point : triangle) ++faces.offsets[point + 1];
-  }
-  for (std::size_t p = 0; p < mesh.positions.size(); ++p) faces.offsets[p + 1] += faces.offsets[p];
-  faces.at_points.resize(3 * mesh.triangles.size());
-  std::vector<std::uint32_t> next(faces.offsets.begin(), faces.offsets.end() - 1);
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    for (const std::uint32_t point : mesh.triangles[t]) faces.at_points[next[point]++] = t;
-  }
+  faces.of_points = point_faces(mesh);
   return faces;
 }
 
@@ -68,7 +55,7 @@ std::vector<std::uint32_t> one_ring_more(const Mesh& mesh, const Faces& faces,
   std::vector<std::uint32_t> wider;
   for (const std::uint32_t face : ring) {
     for (const std::uint32_t point : mesh.triangles[face]) {
-      const auto more = faces.at(point);
+      const auto more = faces.of_points.at(point);
       wider.insert(wider.end(), more.begin(), more.end());
     }
   }
@@ -99,7 +86,7 @@ double roughness(const Mesh& mesh) {
   parallel_for(
       at_points.size(),
       [&](std::size_t p) {
-        const auto ring = faces.at(static_cast<std::uint32_t>(p));
+        const auto ring = faces.of_points.at(static_cast<std::uint32_t>(p));
         if (ring.empty()) return;
         at_points[p] = std::max(roughness_of(faces, ring),
                                 roughness_of(faces, one_ring_more(mesh, faces, ring)));

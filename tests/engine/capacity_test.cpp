@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/base/error.h"
+#include "engine/mark.h"
 #include "tests/support/shapes.h"
 
 namespace triglyph {
