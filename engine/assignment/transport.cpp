@@ -34,44 +34,61 @@ constexpr std::uint32_t kBidsPerWord = 6;  // on average; more bids save few sea
 // An auction costs about as much as searches that visit each word some dozen times.
 constexpr std::size_t kPatience = 20;
 constexpr std::size_t kAuctionBidsPerWord = 40;  // a round ends sooner as a rule
-constexpr double kFirstStep = 0.1;               // of the widest gap between a word's candidates
+constexpr std::size_t kTurnsAhead = 64;
+constexpr double kFirstStep = 0.1;  // of the widest gap between a word's candidates
 constexpr double kLastStep = 1e-4;
 constexpr double kStepRatio = 6;
+
+struct Offer {
+  double key;
+  std::uint32_t unit;
+  float cost;
+};
+
+// What the word can see of its pairs now, and the value of the best one it would not get; false if
+// its list leaves out pairs that may be better.
+struct Offers {
+  std::vector<Offer> pairs;
+  double value = kInfinity;
+};
+
+bool look_at_list(const TransportState& state, std::uint32_t word, Offers& offers) {
+  const TransportWord& w = state.words[word];
+  const std::size_t copies = w.held.size() + w.deficit;
+  offers.pairs.clear();
+  for (const Candidate& pair : w.list.pairs) {
+    offers.pairs.push_back({pair.cost + state.prices[pair.unit], pair.unit, pair.cost});
+  }
+  offers.value = w.list.bound;
+  if (offers.pairs.size() > copies) {
+    const auto nth = offers.pairs.begin() + static_cast<std::ptrdiff_t>(copies);
+    std::nth_element(offers.pairs.begin(), nth, offers.pairs.end(),
+                     [](const Offer& a, const Offer& b) {
+                       return a.key != b.key ? a.key < b.key : a.unit < b.unit;
+                     });
+    offers.value = nth->key;
+  }
+  return offers.value <= w.list.bound;
+}
+
+void refresh_list(TransportState& state, std::uint32_t word, double step, Offers& offers) {
+  while (!look_at_list(state, word, offers)) {
+    step > 0 ? state.renew_short_list(word) : state.renew_list(word);
+  }
+}
 
 // The word takes its best units at the value of the best one it does not get, and raises their
 // prices so that it likes them just as well, or less by `step`. It takes units from others only
 // where that raises the price; the words that lost a unit are appended to losers.
-void bid(TransportState& state, std::uint32_t word, double step,
+void bid(TransportState& state, std::uint32_t word, double step, Offers& offers,
          std::vector<std::uint32_t>& losers) {
   TransportWord& w = state.words[word];
-  const std::size_t copies = w.held.size() + w.deficit;
-  struct Offer {
-    double key;
-    std::uint32_t unit;
-    float cost;
-  };
-  std::vector<Offer> offers;
-  double value = kInfinity;
-  for (;;) {
-    offers.clear();
-    for (const Candidate& pair : w.list.pairs) {
-      offers.push_back({pair.cost + state.prices[pair.unit], pair.unit, pair.cost});
-    }
-    value = w.list.bound;
-    if (offers.size() > copies) {
-      const auto nth = offers.begin() + static_cast<std::ptrdiff_t>(copies);
-      std::nth_element(offers.begin(), nth, offers.end(), [](const Offer& a, const Offer& b) {
-        return a.key != b.key ? a.key < b.key : a.unit < b.unit;
-      });
-      value = nth->key;
-    }
-    if (value <= w.list.bound) break;
-    step > 0 ? state.renew_short_list(word) : state.renew_list(word);
-  }
+  refresh_list(state, word, step, offers);
+  double value = offers.value;
   if (state.reserve_size > 0) value = std::min(value, state.reserve_price);
   // Without a next best pair there is no price to raise: the search decides.
   if (value == kInfinity) value = w.value;
-  for (const Offer& offer : offers) {
+  for (const Offer& offer : offers.pairs) {
     const std::uint32_t before = state.owner[offer.unit];
     const bool is_tied = offer.key == value && before != kNobody && step == 0;
     if (offer.key > value || is_tied) continue;
@@ -89,15 +106,39 @@ void bid(TransportState& state, std::uint32_t word, double step,
   w.value = std::max(w.value, value);
 }
 
+// The lists of the words whose turn comes next, renewed at the prices of now, which only rise: what
+// is renewed here seldom is when the turn comes.
+void refresh_next(TransportState& state, std::span<const std::uint32_t> next, double step) {
+  parallel_for(
+      next.size(),
+      [&](std::size_t i) {
+        if (state.words[next[i]].deficit == 0) return;
+        thread_local Offers offers;
+        refresh_list(state, next[i], step, offers);
+      },
+      4);
+}
+
 void bid_in_turns(TransportState& state, double step, std::size_t bids_per_word) {
   std::vector<std::uint32_t> queue(state.words.size());
   std::iota(queue.begin(), queue.end(), 0U);
   const std::size_t most = bids_per_word * state.words.size();
+  Offers offers;
+  std::size_t refreshed = 0;
   for (std::size_t head = 0; head < queue.size() && head < most; ++head) {
+    if (head == refreshed) {
+      std::vector<std::uint32_t> next(
+          queue.begin() + static_cast<std::ptrdiff_t>(head),
+          queue.begin() + static_cast<std::ptrdiff_t>(std::min(queue.size(), head + kTurnsAhead)));
+      refreshed = head + next.size();
+      std::sort(next.begin(), next.end());
+      next.erase(std::unique(next.begin(), next.end()), next.end());
+      refresh_next(state, next, step);
+    }
     const std::uint32_t word = queue[head];
     if (state.words[word].deficit == 0) continue;
     // A word that lost several units waits in the queue once for each; the first turn serves all.
-    bid(state, word, step, queue);
+    bid(state, word, step, offers, queue);
   }
 }
 
