@@ -142,12 +142,19 @@ std::filesystem::path picture_of(const Record& record, const MarkArguments& argu
   return arguments.pictures / (name.string() + ".png");
 }
 
+std::vector<std::string> renderer_arguments(const MarkArguments& arguments) {
+  std::vector<std::string> words = {"--batch"};
+  const int threads = arguments.machine.threads();
+  if (threads > 0) words.insert(words.end(), {"--threads", std::to_string(threads)});
+  return words;
+}
+
 int run_mark(const MarkArguments& arguments) {
   const Key key = arguments.key.load();
   const std::size_t total = check_plan(*open_jobs(arguments));
   const auto jobs = open_jobs(arguments);
   std::optional<RenderBatch> pictures;
-  if (!arguments.pictures.empty()) pictures.emplace(std::vector<std::string>{"--batch"});
+  if (!arguments.pictures.empty()) pictures.emplace(renderer_arguments(arguments));
   RecordPrinter printer(arguments, total);
   const std::atomic<bool>& stop = interrupt_flag();
   RunOptions options;
