@@ -56,8 +56,8 @@ struct UnitSet {
 enum class CostFunction {
   Displacement,  // the farthest move of a unit's points
   Rms,           // root mean square of the moves of a unit's points
-  Hausdorff,     // between the surface about a unit before and after: sliding along it is free
-  Normal,        // change of a face's normal times the root of its area: what shading shows
+  Hausdorff,  // between the surface about a unit before and after: sliding along it is nearly free
+  Normal,     // change of a face's normal times the root of its area: what shading shows
 };
 
 // "displacement", "rms", "hausdorff", "normal"; the inverse throws Error Usage. See local_cost.h.
