@@ -8,7 +8,8 @@
 #include "cli/options.h"
 #include "cli/verbs.h"
 #include "engine/base/parallel.h"
-#include "engine/mesh/mesh_file.h"
+#include "engine/geometry/box.h"
+#include "engine/io/mesh_file.h"
 #include "engine/metric/comparison.h"
 #include "manifests/run.h"
 

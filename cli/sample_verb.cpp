@@ -9,8 +9,8 @@
 #include "engine/base/output_file.h"
 #include "engine/base/parallel.h"
 #include "engine/base/random.h"
-#include "engine/mesh/export_mesh.h"
-#include "engine/mesh/sample_shapes.h"
+#include "engine/io/export_mesh.h"
+#include "engine/samples/sample_shapes.h"
 #include "manifests/run.h"
 
 namespace triglyph {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "engine/mark.h"
+#include "engine/marking/mark.h"
 
 namespace triglyph {
 

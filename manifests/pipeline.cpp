@@ -5,6 +5,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
+#include "engine/geometry/box.h"
 #include "engine/metric/deformation.h"
 #include "engine/metric/hausdorff.h"
 #include "manifests/readable.h"

@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "engine/base/output_file.h"
-#include "engine/extract.h"
+#include "engine/io/mesh_file.h"
+#include "engine/marking/extract.h"
 #include "engine/mesh/halfedges.h"
-#include "engine/mesh/mesh_file.h"
 #include "manifests/record.h"
 
 namespace triglyph {

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "engine/mark.h"
+#include "engine/io/mesh_file.h"
+#include "engine/marking/mark.h"
 #include "engine/mesh/halfedges.h"
-#include "engine/mesh/mesh_file.h"
 
 namespace triglyph {
 

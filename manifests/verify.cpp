@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "engine/base/error.h"
-#include "engine/extract.h"
+#include "engine/marking/extract.h"
 #include "engine/message/key.h"
 #include "manifests/readable.h"
 

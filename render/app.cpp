@@ -13,7 +13,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
-#include "engine/mesh/mesh_file.h"
+#include "engine/io/mesh_file.h"
 #include "engine/scheme/scheme.h"
 #include "render/colours.h"
 #include "render/comparison.h"

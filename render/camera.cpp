@@ -8,6 +8,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
+#include "engine/geometry/box.h"
 
 namespace triglyph {
 namespace {
@@ -33,20 +34,13 @@ Camera axes_of(const View& view) {
   return camera;
 }
 
-struct Box {
-  Vec3 low, high;
-};
-
 // In the camera's axes.
 Box box_in(std::span<const Vec3> points, const Camera& camera) {
   check(!points.empty(), "a view needs points");
   const Vec3 towards = camera.towards_viewer();
-  constexpr double kFar = std::numeric_limits<double>::infinity();
-  Box box{Vec3(kFar, kFar, kFar), Vec3(-kFar, -kFar, -kFar)};
+  Box box;
   for (const Vec3& point : points) {
-    const Vec3 seen(dot(point, camera.right), dot(point, camera.up), dot(point, towards));
-    box.low.minimize(seen);
-    box.high.maximize(seen);
+    box.extend({dot(point, camera.right), dot(point, camera.up), dot(point, towards)});
   }
   return box;
 }
@@ -56,10 +50,7 @@ double shown_area(const Mesh& mesh, const Vec3& towards_viewer) {
   return parallel_reduce(
       mesh.triangles.size(), 0.0,
       [&](std::size_t t) {
-        const Triangle& corners = mesh.triangles[t];
-        const Vec3& a = mesh.positions[corners[0]];
-        return std::abs(dot(cross(mesh.positions[corners[1]] - a, mesh.positions[corners[2]] - a),
-                            towards_viewer));
+        return std::abs(dot(area_normal(mesh.positions, mesh.triangles[t]), towards_viewer));
       },
       [](double a, double b) { return a + b; });
 }

@@ -7,8 +7,9 @@
 
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
+#include "engine/geometry/box.h"
+#include "engine/geometry/spatial_index.h"
 #include "engine/mesh/edge_length.h"
-#include "engine/mesh/spatial_index.h"
 #include "engine/metric/comparison.h"
 #include "engine/metric/hausdorff.h"
 #include "render/colours.h"
@@ -143,9 +144,7 @@ class Comparison {
     const ClosestPoint on_original = SpatialIndex(original_.positions, original_.triangles)
                                          .closest(place, std::numeric_limits<double>::infinity());
     const Triangle& face = original_.triangles[on_original.triangle];
-    const Vec3& corner = original_.positions[face[0]];
-    const Vec3 normal =
-        cross(original_.positions[face[1]] - corner, original_.positions[face[2]] - corner);
+    const Vec3 normal = area_normal(original_.positions, face);
     const double around =
         std::min(camera_.half_height, std::max(kCloseEdges * mean_edge_length(around_face(face)),
                                                kCloseDistances * distance.symmetric()));
@@ -216,10 +215,7 @@ std::vector<double> distances(const Mesh& original, const Mesh& marked, bool wit
         const ClosestPoint near = surface.closest(point, std::numeric_limits<double>::infinity());
         far[p] = near.distance;
         if (!with_sign) return;
-        const Triangle& face = original.triangles[near.triangle];
-        const Vec3& corner = original.positions[face[0]];
-        const Vec3 normal =
-            cross(original.positions[face[1]] - corner, original.positions[face[2]] - corner);
+        const Vec3 normal = area_normal(original.positions, original.triangles[near.triangle]);
         if (dot(point - near.point, normal) < 0) far[p] = -far[p];
       },
       256);

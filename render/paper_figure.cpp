@@ -2,8 +2,9 @@
 
 #include <algorithm>
 
-#include "engine/mark.h"
-#include "engine/metric/edge_graph.h"
+#include "engine/geometry/box.h"
+#include "engine/marking/mark.h"
+#include "engine/mesh/edge_graph.h"
 #include "engine/metric/hausdorff.h"
 #include "render/colours.h"
 #include "render/ray_caster.h"

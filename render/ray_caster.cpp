@@ -8,7 +8,8 @@
 
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
-#include "engine/mesh/embree_device.h"
+#include "engine/geometry/box.h"
+#include "engine/geometry/embree_device.h"
 #include "render/colours.h"
 
 namespace triglyph {
@@ -94,14 +95,9 @@ struct RayCaster::Tracer {
   SceneHandle surface, dots, balls;
 
   explicit Tracer(const Scene& seen) : scene(seen) {
-    constexpr double kFar = std::numeric_limits<double>::infinity();
-    Vec3 low(kFar, kFar, kFar), high(-kFar, -kFar, -kFar);
-    for (const Vec3& point : scene.mesh.positions) {
-      low.minimize(point);
-      high.maximize(point);
-    }
-    centre = (low + high) / 2;
-    const double half = (high - low).max() / 2;
+    const Box box = bounding_box(scene.mesh.positions);
+    centre = (box.low + box.high) / 2;
+    const double half = box.size().max() / 2;
     scale = half > 0 ? 1 / half : 1;
     run_isolated([&] {
       attach_surface();
@@ -228,8 +224,7 @@ struct RayCaster::Tracer {
   [[nodiscard]] bool is_on_edge(const Triangle& corners,
                                 const std::array<double, 3>& shares) const {
     const auto& at = scene.mesh.positions;
-    const double area =
-        cross(at[corners[1]] - at[corners[0]], at[corners[2]] - at[corners[0]]).norm();
+    const double area = area_normal(at, corners).norm();
     for (std::size_t c = 0; c < 3; ++c) {
       const double side = (at[corners[(c + 1) % 3]] - at[corners[(c + 2) % 3]]).norm();
       if (side > 0 && shares[c] * area / side < scene.edge_width / 2) return true;

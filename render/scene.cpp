@@ -13,12 +13,7 @@ std::vector<Vec3> area_normals(const Mesh& mesh) {
   std::vector<Vec3> normals(mesh.triangles.size());
   parallel_for(
       normals.size(),
-      [&](std::size_t t) {
-        const Triangle& corners = mesh.triangles[t];
-        const Vec3& a = mesh.positions[corners[0]];
-        normals[t] = cross(mesh.positions[corners[1]] - a, mesh.positions[corners[2]] - a);
-      },
-      kBlock);
+      [&](std::size_t t) { normals[t] = area_normal(mesh.positions, mesh.triangles[t]); }, kBlock);
   return normals;
 }
 

@@ -13,10 +13,10 @@
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <benchmark/benchmark.h>
 
-#include "engine/mesh/export_mesh.h"
-#include "engine/mesh/mapped_file.h"
-#include "engine/mesh/mesh_file.h"
-#include "engine/mesh/readers.h"
+#include "engine/io/export_mesh.h"
+#include "engine/io/mapped_file.h"
+#include "engine/io/mesh_file.h"
+#include "engine/io/readers.h"
 
 namespace {
 

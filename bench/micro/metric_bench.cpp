@@ -1,11 +1,12 @@
 // Distances between meshes, beside CGAL's of the same certainty.
 #include <benchmark/benchmark.h>
 
-#include "engine/mark.h"
+#include "engine/geometry/box.h"
+#include "engine/io/mesh_file.h"
+#include "engine/marking/mark.h"
 #include "engine/mesh/halfedges.h"
-#include "engine/mesh/mesh_file.h"
-#include "engine/mesh/sample_shapes.h"
 #include "engine/metric/comparison.h"
+#include "engine/samples/sample_shapes.h"
 #include "tests/support/cgal_hausdorff.h"
 #include "tests/support/remeshing.h"
 

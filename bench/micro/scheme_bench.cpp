@@ -2,13 +2,13 @@
 // off.
 #include <benchmark/benchmark.h>
 
+#include "engine/io/mesh_file.h"
 #include "engine/layout/layout.h"
-#include "engine/mark.h"
+#include "engine/marking/mark.h"
 #include "engine/mesh/edge_length.h"
 #include "engine/mesh/halfedges.h"
-#include "engine/mesh/mesh_file.h"
-#include "engine/mesh/sample_shapes.h"
-#include "engine/scheme/integral_invariants.h"
+#include "engine/samples/sample_shapes.h"
+#include "engine/scheme/iie/integral_invariants.h"
 
 namespace triglyph {
 namespace {
@@ -50,8 +50,8 @@ void BM_Layout(benchmark::State& state, LayoutMethod method) {
   const Subject subject(static_cast<std::size_t>(state.range(0)));
   std::size_t units = 0;
   for (auto _ : state) {
-    const Conflicts conflicts(subject.units, subject.mesh.positions.size(),
-                              ConflictRule::ReadWrite);
+    const Conflicts conflicts(subject.units.moved, subject.units.read_or_moved(),
+                              subject.mesh.positions.size(), ConflictRule::ReadWrite);
     units = choose_layout(conflicts, {.method = method}).size();
   }
   count_triangles(state, subject.mesh);

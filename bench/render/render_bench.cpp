@@ -1,8 +1,8 @@
 // How long pictures take: a megapixel of the bunny at 16 samples is to stay within a second.
 #include <benchmark/benchmark.h>
 
-#include "engine/mesh/mesh_file.h"
-#include "engine/mesh/sample_shapes.h"
+#include "engine/io/mesh_file.h"
+#include "engine/samples/sample_shapes.h"
 #include "render/comparison.h"
 #include "render/ray_caster.h"
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "engine/base/error.h"
-#include "engine/extract.h"
-#include "engine/mark.h"
-#include "engine/mesh/mesh_file.h"
+#include "engine/io/mesh_file.h"
+#include "engine/marking/extract.h"
+#include "engine/marking/mark.h"
 #include "tests/support/attacks.h"
 #include "tests/support/remeshing.h"
 

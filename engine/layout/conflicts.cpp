@@ -32,9 +32,10 @@ ConflictRule conflict_rule(const std::string& name) {
   throw Error(ErrorCode::Usage, {}, "", "unknown rule of conflicts '" + name + "'");
 }
 
-Conflicts::Conflicts(const UnitSet& units, std::size_t points, ConflictRule rule)
-    : moved_(rule == ConflictRule::SharedPoint ? &units.read_or_moved() : &units.moved),
-      read_(&units.read_or_moved()),
+Conflicts::Conflicts(const PointLists& moved, const PointLists& read, std::size_t points,
+                     ConflictRule rule)
+    : moved_(rule == ConflictRule::SharedPoint ? &read : &moved),
+      read_(&read),
       movers_(transpose(*moved_, points)) {
   if (moved_ != read_) readers_ = transpose(*read_, points);
 }

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/scheme/scheme.h"
+#include "engine/base/point_lists.h"
 
 namespace triglyph {
 
@@ -23,8 +23,10 @@ enum class ConflictRule {
 
 class Conflicts {
  public:
-  // `units` must outlive the conflicts. O(total size of the units).
-  Conflicts(const UnitSet& units, std::size_t points, ConflictRule rule);
+  // `moved` and `read`: points that each candidate may move, and those that its invariants depend
+  // on, which contain the former; they may be one object, and both must outlive the conflicts.
+  // O(total size of the lists).
+  Conflicts(const PointLists& moved, const PointLists& read, std::size_t points, ConflictRule rule);
 
   [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(moved_->size()); }
   [[nodiscard]] std::size_t points() const { return movers_.size(); }

@@ -6,9 +6,14 @@
 #include <vector>
 
 #include "engine/mesh/mesh.h"
-#include "engine/mesh/readers.h"
 
 namespace triglyph {
+
+// Polygons: face f has the corners [ends[f - 1], ends[f]) of file vertices.
+struct Faces {
+  std::vector<std::uint32_t> corners;
+  std::vector<std::uint32_t> ends;
+};
 
 // Cuts every face into triangles that do not depend on the corner the face starts at, nor on
 // place, size and orientation of the model: a quadrangle along its shorter diagonal, a larger

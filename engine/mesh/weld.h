@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/mesh/vec3.h"
+#include "engine/geometry/vec3.h"
 
 namespace triglyph {
 

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "engine/base/error.h"
+#include "engine/geometry/box.h"
 #include "engine/metric/deformation.h"
 #include "engine/metric/roughness.h"
 #include "engine/metric/sampled_distance.h"

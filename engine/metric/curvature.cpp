@@ -5,16 +5,14 @@
 #include <cmath>
 
 #include "engine/base/parallel.h"
-#include "engine/mesh/symmetric_matrix.h"
+#include "engine/geometry/symmetric_matrix.h"
 #include "engine/metric/surface_walk.h"
 
 namespace triglyph {
 namespace {
 
 Vec3 normal_of(const Mesh& mesh, std::uint32_t face) {
-  const Triangle& t = mesh.triangles[face];
-  const Vec3& a = mesh.positions[t[0]];
-  return cross(mesh.positions[t[1]] - a, mesh.positions[t[2]] - a);
+  return area_normal(mesh.positions, mesh.triangles[face]);
 }
 
 // Signed angles between the faces of every edge, > 0 where convex; radians.

@@ -17,8 +17,8 @@
 #include <limits>
 #include <span>
 
+#include "engine/geometry/spatial_index.h"
 #include "engine/mesh/mesh.h"
-#include "engine/mesh/spatial_index.h"
 
 namespace triglyph {
 

@@ -9,7 +9,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
-#include "engine/mesh/spatial_index.h"
+#include "engine/geometry/spatial_index.h"
 #include "engine/metric/nearby_triangles.h"
 
 namespace triglyph {
@@ -72,17 +72,6 @@ HausdorffDistance hausdorff(const Mesh& first, const Mesh& second, double tolera
   parallel_pair([&] { distance.forward = one_way(first, second); },
                 [&] { distance.backward = one_way(second, first); });
   return distance;
-}
-
-double box_diagonal(std::span<const Vec3> points) {
-  if (points.empty()) return 0;
-  Vec3 low = points[0];
-  Vec3 high = points[0];
-  for (const Vec3& point : points) {
-    low.minimize(point);
-    high.maximize(point);
-  }
-  return (high - low).norm();
 }
 
 }  // namespace triglyph

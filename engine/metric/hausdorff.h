@@ -35,7 +35,4 @@ inline constexpr double kHausdorffTolerance = 1e-6;
 // no triangles. O((s + t) log (s + t)).
 [[nodiscard]] HausdorffDistance hausdorff(const Mesh& first, const Mesh& second, double tolerance);
 
-// Length of the diagonal of the axis-parallel box around the points; 0 for none.
-[[nodiscard]] double box_diagonal(std::span<const Vec3> points);
-
 }  // namespace triglyph

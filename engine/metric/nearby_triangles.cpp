@@ -7,26 +7,20 @@
 #include <cstdint>
 
 #include "engine/base/parallel.h"
+#include "engine/geometry/box.h"
 
 namespace triglyph {
 namespace {
 
 constexpr double kCellsAcross = 16;  // of the largest box, at most
 
-struct Box {
-  Vec3 low;
-  Vec3 high;
-};
-
 // Around a triangle before and after, widened by the farthest move of its corners.
 Box swept_box(const Triangle& triangle, std::span<const Vec3> before, std::span<const Vec3> after) {
-  Box box{before[triangle[0]], before[triangle[0]]};
+  Box box;
   double reach_squared = 0;
   for (const std::uint32_t point : triangle) {
-    for (const Vec3& position : {before[point], after[point]}) {
-      box.low.minimize(position);
-      box.high.maximize(position);
-    }
+    box.extend(before[point]);
+    box.extend(after[point]);
     reach_squared = std::max(reach_squared, (after[point] - before[point]).sqrnorm());
   }
   const double reach = std::sqrt(reach_squared);
@@ -119,28 +113,26 @@ std::vector<Triangle> nearby_triangles(std::span<const Triangle> triangles,
   boxes.reserve(moved.size());
   double largest = 0;
   double sum = 0;
-  Vec3 low = before[moved[0][0]];
-  Vec3 high = low;
+  Box around;
   for (const Triangle& triangle : moved) {
     boxes.push_back(swept_box(triangle, before, after));
-    low.minimize(boxes.back().low);
-    high.maximize(boxes.back().high);
-    const double width = (boxes.back().high - boxes.back().low).max();
+    around.extend(boxes.back());
+    const double width = boxes.back().size().max();
     largest = std::max(largest, width);
     sum += width;
   }
   // beyond this, cell numbers would not be exact
-  if (!(largest > 0 && (high - low).max() < 1e12 * largest)) {
+  if (!(largest > 0 && around.size().max() < 1e12 * largest)) {
     return {triangles.begin(), triangles.end()};
   }
   // as wide as most boxes, and not so narrow that the largest touches too many
   const double cell = std::max(sum / static_cast<double>(moved.size()), largest / kCellsAcross);
-  TouchedCells touched(low, cell, moved.size());
+  TouchedCells touched(around.low, cell, moved.size());
   for (const Box& box : boxes) touched.touch(box);
   return parallel_collect<Triangle>(
       triangles.size(), [&](std::size_t t, std::vector<Triangle>& out) {
         const Box box = swept_box(triangles[t], before, after);
-        const bool apart = (box.low - high).max() > 0 || (low - box.high).max() > 0;
+        const bool apart = (box.low - around.high).max() > 0 || (around.low - box.high).max() > 0;
         if (!apart && touched.touches(box)) out.push_back(triangles[t]);
       });
 }

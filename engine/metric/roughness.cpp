@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "engine/base/parallel.h"
+#include "engine/mesh/edge_graph.h"
 #include "engine/mesh/point_faces.h"
-#include "engine/metric/edge_graph.h"
 
 namespace triglyph {
 namespace {
@@ -26,9 +26,7 @@ Faces faces_of(const Mesh& mesh) {
   std::vector<Vec3> normals(mesh.triangles.size());
   faces.areas.resize(mesh.triangles.size());
   for (std::size_t t = 0; t < normals.size(); ++t) {
-    const Triangle& corners = mesh.triangles[t];
-    const Vec3& a = mesh.positions[corners[0]];
-    const Vec3 normal = cross(mesh.positions[corners[1]] - a, mesh.positions[corners[2]] - a);
+    const Vec3 normal = area_normal(mesh.positions, mesh.triangles[t]);
     faces.areas[t] = normal.norm() / 2;
     normals[t] = faces.areas[t] > 0 ? normal / normal.norm() : Vec3(0, 0, 0);
   }

@@ -8,8 +8,8 @@
 
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
-#include "engine/mesh/spatial_index.h"
-#include "engine/metric/edge_graph.h"
+#include "engine/geometry/spatial_index.h"
+#include "engine/mesh/edge_graph.h"
 
 namespace triglyph {
 namespace {
@@ -74,14 +74,10 @@ Sums fold(std::size_t n, const SpatialIndex& surface, const Visit& visit) {
   return sums;
 }
 
-double area_of(const Mesh& mesh, const Triangle& t) {
-  const Vec3& a = mesh.positions[t[0]];
-  return cross(mesh.positions[t[1]] - a, mesh.positions[t[2]] - a).norm() / 2;
-}
-
 double area_of(const Mesh& mesh) {
   return parallel_reduce(
-      mesh.triangles.size(), 0.0, [&](std::size_t t) { return area_of(mesh, mesh.triangles[t]); },
+      mesh.triangles.size(), 0.0,
+      [&](std::size_t t) { return triangle_area(mesh.positions, mesh.triangles[t]); },
       [](double a, double b) { return a + b; });
 }
 
@@ -153,7 +149,7 @@ class Metro {
   Sums faces(double samples_an_area) {
     std::vector<double> shares(mesh_.triangles.size());
     for (std::size_t t = 0; t < shares.size(); ++t) {
-      shares[t] = samples_an_area * area_of(mesh_, mesh_.triangles[t]);
+      shares[t] = samples_an_area * triangle_area(mesh_.positions, mesh_.triangles[t]);
     }
     const std::vector<std::uint32_t> counts = whole_samples(shares);
     return fold(counts.size(), other_, [&](std::size_t t, Probe& probe, Sums& sums) {
@@ -198,7 +194,7 @@ void integrate_face(const Mesh& mesh, const Triangle& t, double step, Probe& pro
   }
   const auto rows = static_cast<std::size_t>(std::max(1.0, std::ceil(longest / step)));
   const auto parts = static_cast<double>(rows);
-  const double area = area_of(mesh, t) / (parts * parts);
+  const double area = triangle_area(mesh.positions, t) / (parts * parts);
   std::vector<double> last;  // distances of the row before, one more than this row's
   for (std::size_t i = 0; i <= rows; ++i) {
     std::vector<double> row(rows - i + 1);

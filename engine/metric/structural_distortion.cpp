@@ -9,7 +9,8 @@
 
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
-#include "engine/mesh/spatial_index.h"
+#include "engine/geometry/box.h"
+#include "engine/geometry/spatial_index.h"
 #include "engine/metric/curvature.h"
 #include "engine/metric/surface_walk.h"
 
@@ -124,12 +125,7 @@ double pooled(std::span<const double> distortion, const EdgeGraph& graph) {
 }
 
 double longest_side(std::span<const Vec3> points) {
-  Vec3 low = points[0], high = points[0];
-  for (const Vec3& point : points) {
-    low.minimize(point);
-    high.maximize(point);
-  }
-  return (high - low).max();
+  return bounding_box(points).size().max();
 }
 
 std::vector<double> relative_curvatures(const Mesh& mesh, const EdgeGraph& graph, double radius,

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "engine/base/parallel.h"
+#include "engine/mesh/edge_graph.h"
 #include "engine/mesh/mesh.h"
-#include "engine/metric/edge_graph.h"
 
 namespace triglyph {
 

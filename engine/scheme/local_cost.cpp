@@ -44,7 +44,7 @@ Corners starting_at(const Corners& corners, std::size_t first) {
 }
 
 Vec3 area_vector(const Corners& corners) {
-  return cross(corners[1] - corners[0], corners[2] - corners[0]) * 0.5;
+  return area_normal(corners[0], corners[1], corners[2]) * 0.5;
 }
 
 }  // namespace

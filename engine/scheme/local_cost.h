@@ -12,7 +12,7 @@
 #include <optional>
 #include <span>
 
-#include "engine/mesh/spatial_index.h"
+#include "engine/geometry/spatial_index.h"
 #include "engine/scheme/scheme.h"
 
 namespace triglyph {

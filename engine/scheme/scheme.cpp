@@ -5,9 +5,9 @@
 
 #include "engine/base/error.h"
 #include "engine/mesh/edge_length.h"
-#include "engine/scheme/aie.h"
-#include "engine/scheme/iie.h"
-#include "engine/scheme/tsq.h"
+#include "engine/scheme/aie/aie.h"
+#include "engine/scheme/iie/iie.h"
+#include "engine/scheme/tsq/tsq.h"
 
 namespace triglyph {
 namespace {

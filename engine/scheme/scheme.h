@@ -11,33 +11,12 @@
 #include <vector>
 
 #include "engine/assignment/cost_matrix.h"
-#include "engine/mesh/halfedges.h"
-#include "engine/mesh/mesh.h"
+#include "engine/base/point_lists.h"
+#include "engine/mesh/surface.h"
 #include "engine/message/votes.h"
 #include "engine/message/words.h"
 
 namespace triglyph {
-
-// A mesh with its connectivity; views that outlive the call.
-struct Surface {
-  const Mesh& mesh;
-  const Halfedges& halfedges;
-};
-
-// Lists of points, one list a unit (compressed rows).
-struct PointLists {
-  std::vector<std::uint32_t> offsets{0};
-  std::vector<std::uint32_t> points;
-
-  [[nodiscard]] std::size_t size() const { return offsets.size() - 1; }
-  void append(std::span<const std::uint32_t> list) {
-    points.insert(points.end(), list.begin(), list.end());
-    offsets.push_back(static_cast<std::uint32_t>(points.size()));
-  }
-  [[nodiscard]] std::span<const std::uint32_t> operator[](std::size_t i) const {
-    return {points.data() + offsets[i], points.data() + offsets[i + 1]};
-  }
-};
 
 // Candidates for invariant units. Anchors ascend and none comes twice: where a place offers several
 // units, the anchor says which. What a unit reads contains what it moves.

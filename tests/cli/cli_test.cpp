@@ -10,8 +10,8 @@
 #include <unistd.h>
 
 #include "engine/base/output_file.h"
-#include "engine/mesh/export_mesh.h"
-#include "engine/mesh/sample_shapes.h"
+#include "engine/io/export_mesh.h"
+#include "engine/samples/sample_shapes.h"
 #include "tests/support/temp_folder.h"
 
 namespace triglyph {

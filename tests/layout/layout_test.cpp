@@ -9,7 +9,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/random.h"
-#include "engine/scheme/tsq.h"
+#include "engine/scheme/tsq/tsq.h"
 #include "tests/support/arenas.h"
 #include "tests/support/shapes.h"
 
@@ -56,7 +56,7 @@ INSTANTIATE_TEST_SUITE_P(All, BothRules,
 TEST_P(BothRules, NeighboursAreExactlyTheUnitsThatInterfere) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const UnitSet units = random_units(seed, 40, 30);
-    const Conflicts conflicts(units, 30, GetParam());
+    const Conflicts conflicts(units.moved, units.read_or_moved(), 30, GetParam());
     for (std::uint32_t i = 0; i < units.size(); ++i) {
       std::set<std::uint32_t> neighbours;
       conflicts.for_each_neighbour(i, [&](std::uint32_t j) { neighbours.insert(j); });
@@ -73,7 +73,7 @@ TEST_P(BothRules, NeighboursAreExactlyTheUnitsThatInterfere) {
 TEST_P(BothRules, LayoutsAreMaximalIndependentAndWithinTheBound) {
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
     const UnitSet units = random_units(seed, 60, 50);
-    const Conflicts conflicts(units, 50, GetParam());
+    const Conflicts conflicts(units.moved, units.read_or_moved(), 50, GetParam());
     for (const std::string_view name : layout_names()) {
       const auto chosen =
           choose_layout(conflicts, {.method = layout_method(std::string(name)), .iterations = 4});
@@ -112,7 +112,7 @@ TEST_P(BothRules, BoundHoldsAndMinDegreeIsNearlyMaximum) {
   std::size_t optimum = 0, greedy = 0;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     const UnitSet units = random_units(100 + seed, 14, 20);
-    const Conflicts conflicts(units, 20, GetParam());
+    const Conflicts conflicts(units.moved, units.read_or_moved(), 20, GetParam());
     const std::size_t best = maximum_by_brute_force(units, GetParam());
     EXPECT_LE(best, layout_bound(conflicts));
     const std::size_t found = min_degree_layout(conflicts).size();
@@ -125,7 +125,7 @@ TEST_P(BothRules, BoundHoldsAndMinDegreeIsNearlyMaximum) {
 
 TEST(FirstFit, TakesUnitsInOrder) {
   const UnitSet units = random_units(5, 50, 40);
-  const Conflicts conflicts(units, 40, ConflictRule::ReadWrite);
+  const Conflicts conflicts(units.moved, units.read_or_moved(), 40, ConflictRule::ReadWrite);
   std::vector<std::uint32_t> expected;
   for (std::uint32_t i = 0; i < units.size(); ++i) {
     if (std::none_of(expected.begin(), expected.end(), [&](std::uint32_t j) {
@@ -140,8 +140,8 @@ TEST(FirstFit, TakesUnitsInOrder) {
 TEST(MinDegree, FindsMoreUnitsOnASurface) {
   const WordCode code(Key::trial(), {});
   const UnitSet units = TsqScheme(code, {}).find_units(test::bumpy_ball().surface());
-  const Conflicts conflicts(units, test::bumpy_ball().mesh.positions.size(),
-                            ConflictRule::ReadWrite);
+  const Conflicts conflicts(units.moved, units.read_or_moved(),
+                            test::bumpy_ball().mesh.positions.size(), ConflictRule::ReadWrite);
   const std::size_t first_fit = first_fit_layout(conflicts).size();
   const std::size_t min_degree = min_degree_layout(conflicts).size();
   EXPECT_GT(min_degree * 100, first_fit * 104);
@@ -150,7 +150,7 @@ TEST(MinDegree, FindsMoreUnitsOnASurface) {
 TEST_P(BothRules, LocalSearchFindsTheMaximumOfSmallGraphs) {
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     const UnitSet units = random_units(300 + seed, 16, 20);
-    const Conflicts conflicts(units, 20, GetParam());
+    const Conflicts conflicts(units.moved, units.read_or_moved(), 20, GetParam());
     EXPECT_EQ(local_search_layout(conflicts, {.iterations = 400}).size(),
               maximum_by_brute_force(units, GetParam()));
   }
@@ -159,7 +159,8 @@ TEST_P(BothRules, LocalSearchFindsTheMaximumOfSmallGraphs) {
 struct SurfaceUnits {
   UnitSet units =
       TsqScheme(WordCode(Key::trial(), {}), {}).find_units(test::bumpy_ball().surface());
-  Conflicts conflicts{units, test::bumpy_ball().mesh.positions.size(), ConflictRule::ReadWrite};
+  Conflicts conflicts{units.moved, units.read_or_moved(), test::bumpy_ball().mesh.positions.size(),
+                      ConflictRule::ReadWrite};
 };
 
 TEST(LocalSearch, FindsMoreUnitsOnASurfaceThanAnyOther) {
@@ -206,7 +207,7 @@ TEST(StaticDegree, TakesUnitsByTheirDegree) {
   UnitSet units;
   units.anchors = {0, 1, 2, 3};
   units.moved = {{0, 3, 4, 5, 6}, {0, 1, 2, 0, 1, 2}};
-  const Conflicts conflicts(units, 3, ConflictRule::ReadWrite);
+  const Conflicts conflicts(units.moved, units.read_or_moved(), 3, ConflictRule::ReadWrite);
   EXPECT_EQ(static_degree_layout(conflicts), (std::vector<std::uint32_t>{1, 2, 3}));
   EXPECT_EQ(first_fit_layout(conflicts), (std::vector<std::uint32_t>{0}));
 }
@@ -221,7 +222,7 @@ TEST(Layout, IsTheSameForAnyNumberOfThreads) {
 
 TEST(Layout, OfNothingIsEmpty) {
   const UnitSet units;
-  const Conflicts conflicts(units, 0, ConflictRule::ReadWrite);
+  const Conflicts conflicts(units.moved, units.read_or_moved(), 0, ConflictRule::ReadWrite);
   for (const std::string_view name : layout_names()) {
     EXPECT_TRUE(choose_layout(conflicts, {.method = layout_method(std::string(name))}).empty());
   }

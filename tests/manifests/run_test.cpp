@@ -7,7 +7,7 @@
 #include "engine/base/error.h"
 #include "engine/base/output_file.h"
 #include "engine/base/parallel.h"
-#include "engine/mesh/export_mesh.h"
+#include "engine/io/export_mesh.h"
 #include "manifests/pipeline.h"
 #include "tests/support/attacks.h"
 #include "tests/support/shapes.h"

@@ -6,9 +6,9 @@
 
 #include "engine/base/error.h"
 #include "engine/base/output_file.h"
+#include "engine/io/export_mesh.h"
+#include "engine/io/mesh_file.h"
 #include "engine/mesh/edge_length.h"
-#include "engine/mesh/export_mesh.h"
-#include "engine/mesh/mesh_file.h"
 #include "manifests/run.h"
 #include "tests/support/attacks.h"
 #include "tests/support/shapes.h"

@@ -9,7 +9,8 @@
 
 #include "engine/base/error.h"
 #include "engine/base/random.h"
-#include "engine/mesh/spatial_index.h"
+#include "engine/geometry/box.h"
+#include "engine/geometry/spatial_index.h"
 #include "engine/metric/deformation.h"
 #include "tests/support/arenas.h"
 #include "tests/support/cgal_hausdorff.h"

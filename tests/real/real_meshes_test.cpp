@@ -7,9 +7,9 @@
 
 #include "engine/base/error.h"
 #include "engine/base/output_file.h"
-#include "engine/extract.h"
-#include "engine/mesh/export_mesh.h"
-#include "engine/mesh/mesh_file.h"
+#include "engine/io/export_mesh.h"
+#include "engine/io/mesh_file.h"
+#include "engine/marking/extract.h"
 #include "engine/metric/hausdorff.h"
 #include "manifests/pipeline.h"
 #include "manifests/run.h"

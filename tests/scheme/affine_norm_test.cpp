@@ -1,4 +1,4 @@
-#include "engine/scheme/affine_norm.h"
+#include "engine/scheme/aie/affine_norm.h"
 
 #include <cmath>
 

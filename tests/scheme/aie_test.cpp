@@ -1,4 +1,4 @@
-#include "engine/scheme/aie.h"
+#include "engine/scheme/aie/aie.h"
 
 #include <set>
 
@@ -6,9 +6,9 @@
 
 #include "engine/base/error.h"
 #include "engine/base/random.h"
-#include "engine/extract.h"
-#include "engine/mark.h"
-#include "engine/settle.h"
+#include "engine/marking/extract.h"
+#include "engine/marking/mark.h"
+#include "engine/marking/settle.h"
 #include "tests/support/attacks.h"
 #include "tests/support/shapes.h"
 
@@ -106,9 +106,14 @@ TEST(Aie, BasesMayBeSharedButAreNeverMoved) {
     EXPECT_EQ(units.read[i].size(), 8U);
   }
   const std::size_t points = ball.mesh.positions.size();
-  const auto exact = choose_layout(Conflicts(units, points, ConflictRule::ReadWrite), {}).size();
+  const auto exact =
+      choose_layout(Conflicts(units.moved, units.read_or_moved(), points, ConflictRule::ReadWrite),
+                    {})
+          .size();
   const auto disjoint =
-      choose_layout(Conflicts(units, points, ConflictRule::SharedPoint), {}).size();
+      choose_layout(
+          Conflicts(units.moved, units.read_or_moved(), points, ConflictRule::SharedPoint), {})
+          .size();
   EXPECT_GT(exact, disjoint);
 }
 

@@ -1,15 +1,15 @@
-#include "engine/scheme/iie.h"
+#include "engine/scheme/iie/iie.h"
 
 #include <set>
 
 #include <gtest/gtest.h>
 
 #include "engine/base/error.h"
-#include "engine/extract.h"
-#include "engine/mark.h"
+#include "engine/marking/extract.h"
+#include "engine/marking/mark.h"
+#include "engine/marking/settle.h"
 #include "engine/mesh/edge_length.h"
-#include "engine/scheme/ring_signature.h"
-#include "engine/settle.h"
+#include "engine/scheme/iie/ring_signature.h"
 #include "tests/support/arenas.h"
 #include "tests/support/attacks.h"
 #include "tests/support/shapes.h"
@@ -94,8 +94,9 @@ TEST(Iie, MovesOnlyWhatNoOtherUnitReads) {
   const SchemeDefaults defaults = IieScheme::defaults();
   const IieScheme scheme(WordCode(Key::trial(), defaults.fill_format), defaults.fill_options);
   const UnitSet units = scheme.find_units(ball.surface());
-  const auto valid =
-      choose_layout(Conflicts(units, ball.mesh.positions.size(), ConflictRule::ReadWrite), {});
+  const auto valid = choose_layout(Conflicts(units.moved, units.read_or_moved(),
+                                             ball.mesh.positions.size(), ConflictRule::ReadWrite),
+                                   {});
   EXPECT_GT(valid.size(), 50U);
   std::set<std::uint32_t> moved;
   for (const std::uint32_t unit : valid) {

@@ -1,4 +1,4 @@
-#include "engine/scheme/integral_invariants.h"
+#include "engine/scheme/iie/integral_invariants.h"
 
 #include <cmath>
 #include <numbers>
@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "engine/base/random.h"
+#include "engine/geometry/spatial_index.h"
 #include "engine/mesh/edge_length.h"
-#include "engine/mesh/spatial_index.h"
 #include "tests/support/arenas.h"
 #include "tests/support/attacks.h"
 #include "tests/support/shapes.h"

@@ -9,7 +9,7 @@
 #include "engine/base/error.h"
 #include "engine/base/random.h"
 #include "engine/layout/layout.h"
-#include "engine/mark.h"
+#include "engine/marking/mark.h"
 #include "tests/support/arenas.h"
 #include "tests/support/attacks.h"
 #include "tests/support/shapes.h"
@@ -52,7 +52,8 @@ struct Chosen {
 
 Chosen choose(const Scheme& scheme, const Surface& surface) {
   Chosen chosen{scheme.find_units(surface), {}};
-  const Conflicts conflicts(chosen.units, surface.mesh.positions.size(), ConflictRule::ReadWrite);
+  const Conflicts conflicts(chosen.units.moved, chosen.units.read_or_moved(),
+                            surface.mesh.positions.size(), ConflictRule::ReadWrite);
   chosen.valid = choose_layout(conflicts, {});
   return chosen;
 }

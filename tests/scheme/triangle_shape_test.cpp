@@ -1,4 +1,4 @@
-#include "engine/scheme/triangle_shape.h"
+#include "engine/scheme/tsq/triangle_shape.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "engine/scheme/tsq.h"
+#include "engine/scheme/tsq/tsq.h"
 
 #include <set>
 

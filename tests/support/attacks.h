@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/base/random.h"
+#include "engine/geometry/box.h"
 #include "engine/mesh/mesh.h"
 
 namespace triglyph::test {
@@ -142,11 +143,7 @@ inline Mesh with_uniform_noise(const Mesh& mesh, double intensity, std::uint64_t
 // Coordinates rounded to multiples of 2^-bits of the box's side, an axis at a time: the same
 // benchmark.
 inline Mesh quantised(const Mesh& mesh, int bits) {
-  Vec3 low = mesh.positions[0], high = low;
-  for (const Vec3& p : mesh.positions) {
-    low.minimize(p);
-    high.maximize(p);
-  }
+  const auto [low, high] = bounding_box(mesh.positions);
   Mesh result = mesh;
   for (Vec3& p : result.positions) {
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -11,14 +11,14 @@
 namespace triglyph::test {
 
 struct DoubleTraits : OpenMesh::DefaultTraits {
-  using Point = Vec3;
-  using Normal = Vec3;
+  using Point = OpenMesh::Vec3d;
+  using Normal = OpenMesh::Vec3d;
 };
 using Workpiece = OpenMesh::TriMesh_ArrayKernelT<DoubleTraits>;
 
 inline Workpiece workpiece_of(const Mesh& mesh) {
   Workpiece piece;
-  for (const Vec3& p : mesh.positions) piece.add_vertex(p);
+  for (const Vec3& p : mesh.positions) piece.add_vertex({p[0], p[1], p[2]});
   for (const Triangle& t : mesh.triangles) {
     piece.add_face(piece.vertex_handle(t[0]), piece.vertex_handle(t[1]), piece.vertex_handle(t[2]));
   }
@@ -27,7 +27,10 @@ inline Workpiece workpiece_of(const Mesh& mesh) {
 
 inline Mesh mesh_of(const Workpiece& piece) {
   Mesh mesh;
-  for (const auto vertex : piece.vertices()) mesh.positions.push_back(piece.point(vertex));
+  for (const auto vertex : piece.vertices()) {
+    const auto& p = piece.point(vertex);
+    mesh.positions.emplace_back(p[0], p[1], p[2]);
+  }
   for (const auto face : piece.faces()) {
     Triangle triangle{};
     std::size_t i = 0;

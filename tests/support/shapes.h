@@ -5,7 +5,7 @@
 
 #include "engine/mesh/halfedges.h"
 #include "engine/mesh/mesh.h"
-#include "engine/mesh/sample_shapes.h"
+#include "engine/samples/sample_shapes.h"
 #include "engine/scheme/scheme.h"
 
 namespace triglyph::test {

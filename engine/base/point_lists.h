@@ -1,0 +1,25 @@
+// Lists of point numbers, one list a unit, in compressed rows.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace triglyph {
+
+// List i is points[offsets[i]] .. points[offsets[i + 1] - 1].
+struct PointLists {
+  std::vector<std::uint32_t> offsets{0};
+  std::vector<std::uint32_t> points;
+
+  [[nodiscard]] std::size_t size() const { return offsets.size() - 1; }
+  void append(std::span<const std::uint32_t> list) {
+    points.insert(points.end(), list.begin(), list.end());
+    offsets.push_back(static_cast<std::uint32_t>(points.size()));
+  }
+  [[nodiscard]] std::span<const std::uint32_t> operator[](std::size_t i) const {
+    return {points.data() + offsets[i], points.data() + offsets[i + 1]};
+  }
+};
+
+}  // namespace triglyph

@@ -1,0 +1,31 @@
+// Symmetric 3 x 3 matrices as sums of outer products: covariances, curvature tensors.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "engine/geometry/vec3.h"
+
+namespace triglyph {
+
+struct PrincipalAxes {
+  std::array<double, 3> values{};  // eigenvalues, descending
+  std::array<Vec3, 3> axes;        // their eigenvectors, of length 1
+};
+
+class SymmetricMatrix {
+ public:
+  // Adds weight * v v^T.
+  void add(const Vec3& v, double weight) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j <= i; ++j) lower_[i][j] += weight * v[i] * v[j];
+    }
+  }
+
+  [[nodiscard]] PrincipalAxes principal_axes() const;
+
+ private:
+  std::array<std::array<double, 3>, 3> lower_{};
+};
+
+}  // namespace triglyph

@@ -1,0 +1,268 @@
+#include "engine/io/mesh_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "engine/base/error.h"
+#include "engine/base/parallel.h"
+#include "engine/io/byte_parts.h"
+#include "engine/io/mapped_file.h"
+#include "engine/io/number_text.h"
+#include "engine/io/readers.h"
+#include "engine/mesh/triangulate.h"
+#include "engine/mesh/weld.h"
+
+namespace triglyph {
+namespace {
+
+constexpr std::size_t kStyleSample = 4096;    // vertices whose tokens show the number style
+constexpr std::size_t kPatchBlock = 1 << 16;  // vertices patched by one thread
+
+FileContent read_content(const Source& source) {
+  std::string ending = source.path.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  if (ending == ".obj") return read_obj(source);
+  if (ending == ".off") return read_off(source);
+  if (ending == ".ply") return read_ply(source);
+  if (ending == ".stl") return read_stl(source);
+  throw Error(ErrorCode::Unsupported, source.path, "",
+              "unknown ending '" + ending + "' (known: .obj .off .ply .stl)");
+}
+
+// The number token at `begin`, which the reader has accepted.
+std::string_view number_at(std::span<const char> bytes, std::uint64_t begin) {
+  std::uint64_t end = begin;
+  const auto is_part = [](char c) {
+    return (c >= '0' && c <= '9') || c == '.' || c == '-' || c == '+' || c == 'e' || c == 'E';
+  };
+  while (end < bytes.size() && is_part(bytes[end])) ++end;
+  return {bytes.data() + begin, end - begin};
+}
+
+}  // namespace
+
+struct MeshFile::Content {
+  MappedFile mapped;
+  std::vector<char> owned;  // instead of `mapped`, for files in memory
+  std::span<const char> bytes;
+  FileFormat format = FileFormat::Obj;
+  CoordinatePlaces places;
+  std::array<NumberStyle, 3> style;           // of each axis, in text
+  std::array<int, 3> axis_order = {0, 1, 2};  // as they follow each other in the file
+  Vec3 magnitude = {0, 0, 0};
+  std::vector<std::uint32_t> point_of_vertex;
+  std::size_t face_count = 0;
+  Mesh mesh;
+
+  void fill(const std::filesystem::path& path);
+  void learn_styles();
+  [[nodiscard]] double round(double value, int axis) const;
+  [[nodiscard]] std::uint64_t first_byte(std::size_t vertex) const {
+    return places.offset(vertex, axis_order[0]);
+  }
+  void patch_text(std::span<const Vec3> positions, std::size_t begin, std::size_t end,
+                  std::vector<char>& out) const;
+  void patch_binary(std::span<const Vec3> positions, std::size_t begin, std::size_t end,
+                    char* out) const;
+};
+
+void MeshFile::Content::fill(const std::filesystem::path& path) {
+  FileContent content = read_content({bytes, path});
+  if (content.vertices.size() > kMaxCount || content.faces.corners.size() > kMaxCount) {
+    throw Error(ErrorCode::Unsupported, path, "",
+                "more vertices or corners than 32 bits can number");
+  }
+  format = content.format;
+  places = std::move(content.places);
+  face_count = content.faces.ends.size();
+  Weld welded = weld(content.vertices);
+  std::vector<Vec3>().swap(content.vertices);
+  point_of_vertex = std::move(welded.point_of_vertex);
+  mesh.positions = std::move(welded.points);
+  mesh.triangles = triangulate(content.faces, point_of_vertex, mesh.positions);
+  for (const Vec3& p : mesh.positions) {
+    for (int axis = 0; axis < 3; ++axis) {
+      magnitude[axis] = std::max(magnitude[axis], std::abs(p[axis]));
+    }
+  }
+  if (point_of_vertex.empty()) return;
+  std::sort(axis_order.begin(), axis_order.end(),
+            [&](int a, int b) { return places.offset(0, a) < places.offset(0, b); });
+  if (places.is_text) learn_styles();
+}
+
+void MeshFile::Content::learn_styles() {
+  std::vector<std::string_view> tokens;
+  const std::size_t count = point_of_vertex.size();
+  const std::size_t stride = std::max<std::size_t>(count / kStyleSample, 1);
+  for (std::size_t v = 0; v < count; v += stride) {
+    for (int axis = 0; axis < 3; ++axis) {
+      tokens.push_back(number_at(bytes, places.offset(v, axis)));
+    }
+  }
+  const NumberStyle learnt = learn_style(tokens);
+  for (int axis = 0; axis < 3; ++axis) {
+    style[axis] = is_integer(places.scalar[axis]) ? NumberStyle{} : learnt;
+  }
+}
+
+double MeshFile::Content::round(double value, int axis) const {
+  const Scalar scalar = places.scalar[axis];
+  if (places.is_text && !is_integer(scalar)) return round_to(style[axis], value);
+  return round_to(scalar, value);
+}
+
+void MeshFile::Content::patch_text(std::span<const Vec3> positions, std::size_t begin,
+                                   std::size_t end, std::vector<char>& out) const {
+  const std::size_t count = point_of_vertex.size();
+  std::uint64_t copied = begin == 0 ? 0 : first_byte(begin);
+  const std::uint64_t stop = end == count ? bytes.size() : first_byte(end);
+  out.reserve(stop - copied + (stop - copied) / 16);
+  const auto copy_up_to = [&](std::uint64_t offset) {
+    out.insert(out.end(), bytes.begin() + static_cast<std::ptrdiff_t>(copied),
+               bytes.begin() + static_cast<std::ptrdiff_t>(offset));
+    copied = offset;
+  };
+  char text[kNumberCapacity];
+  for (std::size_t v = begin; v < end; ++v) {
+    const std::uint32_t point = point_of_vertex[v];
+    const Vec3 &from = mesh.positions[point], &to = positions[point];
+    if (from == to) continue;
+    for (const int axis : axis_order) {
+      if (to[axis] == from[axis]) continue;
+      const double rounded = round(to[axis], axis);
+      if (rounded == from[axis]) continue;
+      const std::uint64_t offset = places.offset(v, axis);
+      copy_up_to(offset);
+      out.insert(
+          out.end(), text,
+          format_number(style[axis], is_integer(places.scalar[axis]) ? rounded : to[axis], text));
+      copied += number_at(bytes, offset).size();
+    }
+  }
+  copy_up_to(stop);
+}
+
+void MeshFile::Content::patch_binary(std::span<const Vec3> positions, std::size_t begin,
+                                     std::size_t end, char* out) const {
+  for (std::size_t v = begin; v < end; ++v) {
+    const std::uint32_t point = point_of_vertex[v];
+    const Vec3 &from = mesh.positions[point], &to = positions[point];
+    for (int axis = 0; axis < 3; ++axis) {
+      if (to[axis] == from[axis] || round(to[axis], axis) == from[axis]) continue;
+      store(to[axis], places.scalar[axis], places.is_big_endian, out + places.offset(v, axis));
+    }
+  }
+}
+
+std::string_view name_of(FileFormat format) noexcept {
+  switch (format) {
+    case FileFormat::Obj:
+      return "obj";
+    case FileFormat::Off:
+      return "off";
+    case FileFormat::PlyAscii:
+      return "ply ascii";
+    case FileFormat::PlyLittle:
+      return "ply binary_little_endian";
+    case FileFormat::PlyBig:
+      return "ply binary_big_endian";
+    case FileFormat::StlAscii:
+      return "stl ascii";
+    case FileFormat::StlBinary:
+      return "stl binary";
+  }
+  return "unknown";
+}
+
+MeshFile MeshFile::open(const std::filesystem::path& path) {
+  auto content = std::make_unique<Content>();
+  content->mapped = MappedFile::open(path);
+  content->bytes = content->mapped.bytes();
+  content->fill(path);
+  return MeshFile(std::move(content));
+}
+
+MeshFile MeshFile::read(std::vector<char> bytes, const std::filesystem::path& name) {
+  auto content = std::make_unique<Content>();
+  if (bytes.empty()) throw Error(ErrorCode::Unreadable, name, "", "is empty");
+  content->owned = std::move(bytes);
+  content->bytes = content->owned;
+  content->fill(name);
+  return MeshFile(std::move(content));
+}
+
+MeshFile::MeshFile(std::unique_ptr<Content> content) : content_(std::move(content)) {}
+MeshFile::MeshFile(MeshFile&&) noexcept = default;
+MeshFile& MeshFile::operator=(MeshFile&&) noexcept = default;
+MeshFile::~MeshFile() = default;
+
+FileFormat MeshFile::format() const {
+  return content_->format;
+}
+std::span<const char> MeshFile::bytes() const {
+  return content_->bytes;
+}
+std::size_t MeshFile::vertex_count() const {
+  return content_->point_of_vertex.size();
+}
+std::size_t MeshFile::face_count() const {
+  return content_->face_count;
+}
+const Mesh& MeshFile::mesh() const {
+  return content_->mesh;
+}
+
+std::span<const std::uint32_t> MeshFile::point_of_vertex() const {
+  return content_->point_of_vertex;
+}
+
+Vec3 MeshFile::round(const Vec3& point) const {
+  return {content_->round(point[0], 0), content_->round(point[1], 1), content_->round(point[2], 2)};
+}
+
+double MeshFile::number_step() const {
+  double step = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Scalar scalar = content_->places.scalar[axis];
+    const bool is_decimal = content_->places.is_text && !is_integer(scalar);
+    const double largest = content_->magnitude[axis];
+    step = std::max(
+        step, is_decimal ? step_at(content_->style[axis], largest) : step_at(scalar, largest));
+  }
+  return step;
+}
+
+std::vector<char> MeshFile::patched(std::span<const Vec3> positions) const {
+  const Content& content = *content_;
+  check(positions.size() == content.mesh.positions.size(), "one position for every point");
+  const bool is_finite = std::all_of(positions.begin(), positions.end(), [](const Vec3& p) {
+    return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+  });
+  check(is_finite, "positions are finite");
+  const std::size_t count = content.point_of_vertex.size();
+  if (!content.places.is_text || count == 0) {
+    std::vector<char> out(content.bytes.begin(), content.bytes.end());
+    parallel_blocks(
+        count,
+        [&](std::size_t begin, std::size_t end) {
+          content.patch_binary(positions, begin, end, out.data());
+        },
+        kPatchBlock);
+    return out;
+  }
+  std::vector<std::vector<char>> parts((count + kPatchBlock - 1) / kPatchBlock);
+  parallel_blocks(
+      count,
+      [&](std::size_t begin, std::size_t end) {
+        content.patch_text(positions, begin, end, parts[begin / kPatchBlock]);
+      },
+      kPatchBlock);
+  return join(std::move(parts));
+}
+
+}  // namespace triglyph

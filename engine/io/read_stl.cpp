@@ -1,0 +1,164 @@
+// Stereolithography, ascii and binary. The two are told apart by structure, because many binary
+// files begin with the word "solid".
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "engine/base/error.h"
+#include "engine/io/readers.h"
+#include "engine/io/text_scan.h"
+
+namespace triglyph {
+namespace {
+
+constexpr std::size_t kHeader = 84;  // 80 bytes of text and the number of facets
+constexpr std::size_t kFacet = 50;   // normal, three corners, 16 bits of attributes
+
+bool is_word(std::string_view token, std::string_view word) {
+  return std::equal(token.begin(), token.end(), word.begin(), word.end(),
+                    [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a + 32 : a) == b; });
+}
+
+void number_corners(FileContent& content) {
+  const std::size_t corners = content.vertices.size();
+  content.faces.corners.resize(corners);
+  content.faces.ends.resize(corners / 3);
+  for (std::size_t i = 0; i < corners; ++i) {
+    content.faces.corners[i] = static_cast<std::uint32_t>(i);
+  }
+  for (std::size_t f = 0; f < corners / 3; ++f) {
+    content.faces.ends[f] = static_cast<std::uint32_t>(3 * f + 3);
+  }
+}
+
+class AsciiReader {
+ public:
+  explicit AsciiReader(const Source& source) : scan_(source) {}
+
+  FileContent read() {
+    content_.format = FileFormat::StlAscii;
+    expect("solid");
+    scan_.skip_line();
+    while (true) {
+      scan_.skip_space(false);
+      if (scan_.at_end()) scan_.fail("the file ends before 'endsolid'");
+      const char* start = scan_.position();
+      const std::string_view token = scan_.take_token();
+      if (is_word(token, "facet")) {
+        read_facet();
+      } else if (is_word(token, "endsolid")) {
+        scan_.skip_line();
+        scan_.skip_space(false);
+        if (scan_.at_end()) break;
+        expect("solid");
+        scan_.skip_line();
+      } else {
+        scan_.move_to(start);
+        scan_.fail_at("expected 'facet' or 'endsolid'");
+      }
+    }
+    if (content_.vertices.size() <= kMaxCount) number_corners(content_);
+    return std::move(content_);
+  }
+
+ private:
+  void expect(std::string_view word) {
+    scan_.skip_space(false);
+    const char* start = scan_.position();
+    if (is_word(scan_.take_token(), word)) return;
+    scan_.move_to(start);
+    scan_.fail_at("expected '" + std::string(word) + "'");
+  }
+
+  void read_facet() {
+    expect("normal");
+    // Normals stay as they are, so even a "nan" of a facet without area is none of our business.
+    for (int axis = 0; axis < 3; ++axis) {
+      scan_.skip_space(false);
+      (void)scan_.take_token();
+    }
+    expect("outer");
+    expect("loop");
+    for (int corner = 0; corner < 3; ++corner) {
+      expect("vertex");
+      read_corner();
+    }
+    expect("endloop");
+    expect("endfacet");
+  }
+
+  void read_corner() {
+    const char* start[3];
+    Vec3 point;
+    for (int axis = 0; axis < 3; ++axis) {
+      scan_.skip_space(false);
+      start[axis] = scan_.position();
+      point[axis] = scan_.take_number();
+    }
+    content_.vertices.push_back(point);
+    content_.places.tokens.push_back(place_of(scan_, start[0], start[1], start[2]));
+  }
+
+  TextScan scan_;
+  FileContent content_;
+};
+
+FileContent read_binary(const Source& source, std::uint64_t facets) {
+  FileContent content;
+  content.format = FileFormat::StlBinary;
+  content.places.is_text = false;
+  content.places.scalar = {Scalar::Float32, Scalar::Float32, Scalar::Float32};
+  content.places.rows = {kHeader + 12, 3, kFacet, 12, {0, 4, 8}};
+  if (facets * 3 > kMaxCount) {
+    throw Error(ErrorCode::Unsupported, source.path, at_byte(80),
+                std::to_string(facets) + " facets are more than 32 bits can number");
+  }
+  content.vertices.resize(facets * 3);
+  for (std::size_t v = 0; v < content.vertices.size(); ++v) {
+    const std::uint64_t place = content.places.offset(v, 0);
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::uint64_t at = place + 4 * static_cast<std::uint64_t>(axis);
+      const double value = load(source.bytes.data() + at, Scalar::Float32, false);
+      if (!std::isfinite(value)) {
+        throw Error(ErrorCode::Malformed, source.path, at_byte(at), "coordinate is not finite");
+      }
+      content.vertices[v][axis] = value;
+    }
+  }
+  number_corners(content);
+  return content;
+}
+
+// Does the text grammar hold up to the first facet or to the end of an empty solid?
+bool looks_like_text(const Source& source) {
+  TextScan scan(source);
+  scan.skip_space(false);
+  if (!is_word(scan.take_token(), "solid")) return false;
+  scan.skip_line();
+  scan.skip_space(false);
+  const std::string_view next = scan.take_token();
+  return is_word(next, "facet") || is_word(next, "endsolid");
+}
+
+}  // namespace
+
+FileContent read_stl(const Source& source) {
+  const std::size_t size = source.bytes.size();
+  std::uint64_t facets = 0;
+  if (size >= kHeader) {
+    facets = static_cast<std::uint64_t>(load(source.bytes.data() + 80, Scalar::UInt32, false));
+    if (size == kHeader + kFacet * facets) return read_binary(source, facets);
+  }
+  if (looks_like_text(source)) return AsciiReader(source).read();
+  if (size < kHeader) {
+    throw Error(ErrorCode::Malformed, source.path, at_byte(size),
+                "neither an ascii STL ('solid', then 'facet') nor the 84 bytes of a binary one");
+  }
+  if (size < kHeader + kFacet * facets) {
+    throw Error(ErrorCode::Malformed, source.path, at_byte(size),
+                "the file ends inside the " + std::to_string(facets) + " facets it announces");
+  }
+  return read_binary(source, facets);
+}
+
+}  // namespace triglyph

@@ -1,0 +1,87 @@
+// Walking through the bytes of a text file, and the errors that name a line in it. Internal to the
+// readers.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+
+#include "engine/io/number_text.h"
+#include "engine/io/readers.h"
+
+namespace triglyph {
+
+inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+class TextScan {
+ public:
+  // A file without any line feed that has carriage returns ends its lines with those. A UTF-8
+  // byte order mark is skipped. Throws Unsupported for UTF-16.
+  explicit TextScan(const Source& source);
+
+  [[nodiscard]] bool at_end() const noexcept { return p_ == end_; }
+  [[nodiscard]] bool at_line_end() const noexcept { return p_ == end_ || *p_ == eol_; }
+  [[nodiscard]] char here() const noexcept { return *p_; }  // precondition: !at_end()
+  [[nodiscard]] const char* position() const noexcept { return p_; }
+  [[nodiscard]] const char* end() const noexcept { return end_; }
+  void move_to(const char* position) noexcept { p_ = position; }
+
+  [[nodiscard]] bool is_blank(char c) const noexcept {
+    return c == ' ' || (c >= '\t' && c <= '\r' && c != eol_);
+  }
+  [[nodiscard]] bool is_separator(char c) const noexcept {
+    return c == ' ' || (c >= '\t' && c <= '\r') || c == '#' || c == '\\';
+  }
+
+  // Blanks inside the line.
+  void skip_blanks() noexcept {
+    while (p_ != end_ && is_blank(*p_)) ++p_;
+  }
+  // Behind the next line end.
+  void skip_line() noexcept;
+  // To the next token, over lines and, if `comments`, over what follows a '#'.
+  void skip_space(bool comments) noexcept;
+  // The bytes up to the next blank, line end or file end.
+  [[nodiscard]] std::string_view take_token() noexcept;
+
+  // A number with a separator behind it, or Malformed.
+  double take_number() {
+    const ParsedNumber number = parse_number(p_, end_);
+    if (number.end == nullptr || (number.end != end_ && !is_separator(*number.end))) {
+      fail_number();
+    }
+    p_ = number.end;
+    return number.value;
+  }
+  // An integer in [low, high] with a separator behind it, or Malformed naming `what`.
+  std::int64_t take_integer(std::string_view what, std::int64_t low, std::int64_t high);
+
+  [[nodiscard]] std::uint64_t offset(const char* position) const noexcept {
+    return static_cast<std::uint64_t>(position - source_.bytes.data());
+  }
+  [[nodiscard]] char line_end() const noexcept { return eol_; }
+  [[nodiscard]] std::size_t bytes_left() const noexcept {
+    return static_cast<std::size_t>(end_ - p_);
+  }
+
+  // Malformed, at the line of the current position; `fail_at` names the token there as well.
+  [[noreturn]] void fail(const std::string& message) const;
+  [[noreturn]] void fail_at(const std::string& message) const;
+
+ private:
+  [[noreturn]] void fail_number() const;
+
+  const Source& source_;
+  const char* p_;
+  const char* end_;
+  char eol_ = '\n';
+};
+
+// The place of a vertex whose coordinates start at the three positions.
+// Throws Unsupported if they are more than 2 GiB apart.
+[[nodiscard]] TokenPlace place_of(const TextScan& scan, const char* x, const char* y,
+                                  const char* z);
+
+}  // namespace triglyph

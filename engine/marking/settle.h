@@ -1,0 +1,21 @@
+// From ideal positions to those a file will hold: what the mark does to a mesh must survive
+// rounding and must not turn a face over. Units that fail are put back as they were.
+#pragma once
+
+#include "engine/marking/marking.h"
+
+namespace triglyph {
+
+// Triangles whose normal turned by more than a right angle, or that lost all area, because a corner
+// moved; triangles without area before are left out. Ascending. O(triangles).
+[[nodiscard]] std::vector<std::uint32_t> flipped_triangles(std::span<const Triangle> triangles,
+                                                           std::span<const Vec3> before,
+                                                           std::span<const Vec3> after);
+
+// Embeds the placements, rounds what moved, and takes units back until no face is flipped and every
+// unit left reads its word with margin. Fills positions, carriers and units_dropped of `marking`,
+// whose words the placements index.
+void settle(const Surface& surface, const Scheme& scheme, const UnitSet& units,
+            std::span<const Placement> placements, const Rounding& round, Marking& marking);
+
+}  // namespace triglyph

@@ -1,0 +1,332 @@
+#include "engine/scheme/aie/aie.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "engine/base/error.h"
+#include "engine/base/parallel.h"
+#include "engine/scheme/cost_rows.h"
+#include "engine/scheme/local_cost.h"
+
+namespace triglyph {
+namespace {
+
+constexpr double kPlaneBelow = 2e-4;   // flatness below which a basis is read as plane
+constexpr double kExactPlane = 1e-5;   // ... and below which it may be marked as such
+constexpr double kMinFlatness = 4e-3;  // thinner solid bases do not survive rounding
+constexpr double kMinStraightness = 0.02;
+constexpr double kMaxHeight = 1e-3;  // of a point over a plane basis, in its greatest deviations
+constexpr double kMaxMove = 1;       // in greatest deviations: farther is not worth a unit
+constexpr std::size_t kUnitsPerBlock = 16;
+constexpr int kMaxWordBits = 32;
+
+std::array<Vec3, 4> corners_of(const Mesh& mesh, const std::array<std::uint32_t, 4>& basis) {
+  return {mesh.positions[basis[0]], mesh.positions[basis[1]], mesh.positions[basis[2]],
+          mesh.positions[basis[3]]};
+}
+
+int word_bits(const WordFormat& format) {
+  return format.marker_bits + format.subscript_bits + format.part_bits;
+}
+
+}  // namespace
+
+struct AieScheme::Site {
+  EdgeNeighbourhood around;
+  AffineNorm norm;
+  double reach;  // greatest move, model units
+};
+
+AieScheme::Channel AieScheme::make_channel(const WordCode& code, double step, std::size_t group) {
+  const int bits = (word_bits(code.format()) + 3 - static_cast<int>(group)) / 4;
+  return {Quantiser(step, bits, code.offset(group)),
+          Quantiser(step / kPlaneSteps, bits, code.offset(group))};
+}
+
+AieScheme::AieScheme(const WordCode& code, const SchemeOptions& options)
+    : options_(options),
+      format_(code.format()),
+      marker_(code.marker()),
+      channels_{make_channel(code, options.step, 0), make_channel(code, options.step, 1),
+                make_channel(code, options.step, 2), make_channel(code, options.step, 3)} {
+  if (!(options.step > 0 && options.step <= 0.5)) {
+    throw Error(ErrorCode::Usage, {}, "", "the cell width of aie lies above 0 and up to 0.5");
+  }
+  if (word_bits(format_) > kMaxWordBits) {
+    throw Error(ErrorCode::Usage, {}, "", "aie holds 32 bits a unit: marker, subscript and part");
+  }
+}
+
+GroupRule AieScheme::rule_of(std::uint32_t anchor) const {
+  const bool first = anchor % kAlternatives == 0;
+  if (options_.groups == AieGroups::One) {
+    return first ? GroupRule::OuterApexes : GroupRule::MiddleNeighbours;
+  }
+  return first ? GroupRule::ExclusiveNeighbours : GroupRule::NeighboursAndApexes;
+}
+
+AieScheme::GroupBits AieScheme::deal_out(const Word& word) const {
+  const std::uint64_t all = marker_ | std::uint64_t{word.subscript} << format_.marker_bits |
+                            std::uint64_t{word.part}
+                                << (format_.marker_bits + format_.subscript_bits);
+  GroupBits bits{};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(word_bits(format_)); ++i) {
+    bits[i % 4] |= static_cast<std::uint32_t>(all >> i & 1) << (i / 4);
+  }
+  return bits;
+}
+
+// The nearest place for these bits on either side; the nearer cell is not always the shorter way.
+std::optional<Vec3> AieScheme::place(const Site& site, std::size_t group, const Vec3& point,
+                                     std::uint32_t bits) const {
+  const Quantiser& quantiser = channels_[group].quantiser(site.norm);
+  const double value = std::log(site.norm(point));
+  if (!std::isfinite(value)) return std::nullopt;
+  const double near = quantiser.nearest_centre(value, bits);
+  std::optional<Vec3> best;
+  double best_move = site.reach;
+  for (const double centre : {near, quantiser.second_centre(value, near)}) {
+    const Vec3 target = site.norm.nearest_with_norm(point, std::exp(centre));
+    const double move = (target - point).norm();
+    if (!(move < best_move)) continue;
+    best_move = move;
+    best = target;
+  }
+  return best;
+}
+
+std::optional<AieScheme::Site> AieScheme::site_at(const Surface& surface,
+                                                  std::uint32_t anchor) const {
+  const std::uint32_t edge = anchor / kAlternatives;
+  const auto basis = basis_of(surface, edge, false);
+  if (!basis) return std::nullopt;
+  const std::array<Vec3, 4> corners = corners_of(surface.mesh, *basis);
+  const AffineNorm norm(corners, kPlaneBelow);
+  const bool exact =
+      norm.is_plane() ? norm.flatness() <= kExactPlane : norm.flatness() >= kMinFlatness;
+  if (!exact || norm.straightness() < kMinStraightness) return std::nullopt;
+  const auto around = neighbourhood_of(surface, edge, false, rule_of(anchor));
+  if (!around) return std::nullopt;
+  if (norm.is_plane()) {
+    for (const std::uint32_t point : around->all_groups()) {
+      if (norm.height(surface.mesh.positions[point]) > kExactPlane) return std::nullopt;
+    }
+  }
+  return Site{*around, norm, kMaxMove * norm.greatest_deviation()};
+}
+
+float AieScheme::group_cost(const Mesh& mesh, const LocalCost& local, const Site& site,
+                            std::size_t group, std::uint32_t bits) const {
+  std::array<Move, EdgeNeighbourhood::kMaxPoints> moves;
+  std::size_t count = 0;
+  for (const std::uint32_t point : site.around.group(group)) {
+    const std::optional<Vec3> to = place(site, group, mesh.positions[point], bits);
+    if (!to) return kInfeasible;
+    moves[count++] = {point, *to};
+  }
+  return local.of_part(std::span<const Move>(moves.data(), count));
+}
+
+UnitSet AieScheme::find_units(const Surface& surface) const {
+  struct Found {
+    std::uint32_t anchor;
+    EdgeNeighbourhood around;
+  };
+  const auto found = parallel_collect<Found>(surface.halfedges.kernel.n_edges() * kAlternatives,
+                                             [&](std::size_t i, std::vector<Found>& out) {
+                                               const auto anchor = static_cast<std::uint32_t>(i);
+                                               const std::optional<Site> site =
+                                                   site_at(surface, anchor);
+                                               if (site) out.push_back({anchor, site->around});
+                                             });
+  UnitSet units;
+  units.anchors.reserve(found.size());
+  for (const Found& unit : found) {
+    const auto moved = unit.around.all_groups();
+    units.anchors.push_back(unit.anchor);
+    units.moved.append(moved);
+    units.read.points.insert(units.read.points.end(), unit.around.basis.begin(),
+                             unit.around.basis.end());
+    units.read.append(moved);
+  }
+  return units;
+}
+
+CostMatrix AieScheme::costs(const Surface& surface, const UnitSet& units,
+                            std::span<const std::uint32_t> chosen,
+                            std::span<const Word> words) const {
+  std::vector<GroupBits> bits_of;
+  for (const Word& word : words) bits_of.push_back(deal_out(word));
+  const LocalCost local(surface, options_.cost);
+  return fill_cost_rows(chosen.size(), words.size(), [&](std::size_t row, std::span<float> costs) {
+    const std::optional<Site> site = site_at(surface, units.anchors[chosen[row]]);
+    if (!site) return;
+    // a group has few values and many words share them
+    std::array<std::vector<float>, 4> known;
+    for (std::size_t k = 0; k < 4; ++k) {
+      known[k].assign(std::size_t{1} << channels_[k].bits(), -1);
+    }
+    for (std::size_t word = 0; word < costs.size(); ++word) {
+      std::array<float, 4> group_costs{};
+      for (std::size_t k = 0; k < 4; ++k) {
+        float& cost = known[k][bits_of[word][k]];
+        if (cost < 0) cost = group_cost(surface.mesh, local, *site, k, bits_of[word][k]);
+        group_costs[k] = cost;
+      }
+      costs[word] = local.combine(group_costs, site->around.all_groups().size());
+    }
+  });
+}
+
+Embedding AieScheme::embed(const Surface& surface, const UnitSet& units,
+                           std::span<const Placement> placements,
+                           std::span<const Word> words) const {
+  Embedding embedding{surface.mesh.positions, {}};
+  const auto embed_unit = [&](const Placement& placement) {
+    const std::optional<Site> site = site_at(surface, units.anchors[placement.unit]);
+    if (!site) return false;
+    const GroupBits bits = deal_out(words[placement.word]);
+    std::array<Vec3, EdgeNeighbourhood::kMaxPoints> targets;
+    std::size_t next = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+      for (const std::uint32_t point : site->around.group(k)) {
+        const auto to = place(*site, k, surface.mesh.positions[point], bits[k]);
+        if (!to) return false;
+        targets[next++] = *to;
+      }
+    }
+    const auto points = site->around.all_groups();
+    for (std::size_t i = 0; i < points.size(); ++i) embedding.positions[points[i]] = targets[i];
+    return true;
+  };
+  std::vector<char> placed(placements.size());
+  parallel_for(
+      placements.size(), [&](std::size_t i) { placed[i] = embed_unit(placements[i]) ? 1 : 0; },
+      kUnitsPerBlock);
+  for (std::uint32_t i = 0; i < placements.size(); ++i) {
+    if (placed[i] == 0) embedding.failed.push_back(i);
+  }
+  return embedding;
+}
+
+// A group's points carry the same bits; where they disagree, those nearest to their cells' centres
+// win. Its distance counts every point that disagrees as one on the border.
+std::optional<AieScheme::GroupReading> AieScheme::read_group(const Mesh& mesh,
+                                                             const AffineNorm& norm,
+                                                             const EdgeNeighbourhood& around,
+                                                             std::size_t group) const {
+  const Quantiser& quantiser = channels_[group].quantiser(norm);
+  std::array<Quantiser::Cell, EdgeNeighbourhood::kMaxPoints> cells;
+  const auto points = around.group(group);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3& position = mesh.positions[points[i]];
+    if (norm.is_plane() && norm.height(position) > kMaxHeight) return std::nullopt;
+    cells[i] = quantiser.cell_of(std::log(norm(position)));
+  }
+  GroupReading result;
+  float best = -1;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    float support = 0;
+    std::size_t supporters = 0;
+    for (std::size_t j = 0; j < points.size(); ++j) {
+      if (cells[j].bits != cells[i].bits) continue;
+      support += 1 - cells[j].distance;
+      ++supporters;
+    }
+    if (support <= best) continue;
+    best = support;
+    result.bits = cells[i].bits;
+    result.unanimous = supporters == points.size();
+  }
+  result.distance = 1 - best / static_cast<float>(points.size());
+  return result;
+}
+
+std::optional<AieScheme::UnitReading> AieScheme::read_one_way(const Surface& surface,
+                                                              const AffineNorm& norm,
+                                                              std::uint32_t anchor,
+                                                              bool reversed) const {
+  const auto around = neighbourhood_of(surface, anchor / kAlternatives, reversed, rule_of(anchor));
+  if (!around) return std::nullopt;
+  std::array<GroupReading, 4> groups;
+  const auto bit_of_word = [&](int i) {
+    return groups[static_cast<std::size_t>(i % 4)].bits >> (i / 4) & 1;
+  };
+  UnitReading unit;
+  Reading& reading = unit.reading;
+  reading.anchor = anchor;
+  reading.weight = 1;
+  for (int k = 0; k < 4; ++k) {
+    const auto found = read_group(surface.mesh, norm, *around, static_cast<std::size_t>(k));
+    if (!found) return std::nullopt;
+    groups[static_cast<std::size_t>(k)] = *found;
+    for (int i = k; i < format_.marker_bits; i += 4) {
+      if (bit_of_word(i) != (marker_ >> i & 1)) return std::nullopt;  // most edges end here
+    }
+    reading.weight *= 1 - found->distance;
+    reading.worst_offset = std::max(reading.worst_offset, found->distance);
+    unit.unanimous = unit.unanimous && found->unanimous;
+  }
+  for (int i = 0; i < format_.subscript_bits; ++i) {
+    reading.word.subscript |= bit_of_word(format_.marker_bits + i) << i;
+  }
+  for (int i = 0; i < format_.part_bits; ++i) {
+    const int at = format_.marker_bits + format_.subscript_bits + i;
+    reading.word.part |= bit_of_word(at) << i;
+    reading.bit_weights[static_cast<std::size_t>(i)] =
+        1 - groups[static_cast<std::size_t>(at % 4)].distance;
+  }
+  return unit;
+}
+
+std::optional<AieScheme::UnitReading> AieScheme::read_unit(const Surface& surface,
+                                                           const AffineNorm& norm,
+                                                           std::uint32_t anchor) const {
+  const std::optional<UnitReading> forward = read_one_way(surface, norm, anchor, false);
+  const std::optional<UnitReading> backward = read_one_way(surface, norm, anchor, true);
+  const bool turned = backward && (!forward || backward->reading.weight > forward->reading.weight);
+  return turned ? backward : forward;
+}
+
+std::vector<Reading> AieScheme::read(const Surface& surface) const {
+  const auto read_edge = [&](std::size_t i, std::vector<Reading>& out) {
+    const auto edge = static_cast<std::uint32_t>(i);
+    const auto basis = basis_of(surface, edge, false);
+    if (!basis) return;
+    const AffineNorm norm(corners_of(surface.mesh, *basis), kPlaneBelow);
+    if (!(norm.straightness() > 0)) return;
+    auto first = read_unit(surface, norm, kAlternatives * edge);
+    auto second = read_unit(surface, norm, kAlternatives * edge + 1);
+    const bool nested = options_.groups == AieGroups::All;
+    if (nested && first && second && first->reading.word == second->reading.word) {
+      // one unit. Its points are those of the larger grouping if all of these agree: in a unit of
+      // the smaller one the others are strangers, and agree with chance 2^-(bits of the word).
+      const bool larger = second->unanimous || second->reading.weight > first->reading.weight;
+      (larger ? first : second).reset();
+    }
+    if (first) out.push_back(first->reading);
+    if (second) out.push_back(second->reading);
+  };
+  return parallel_collect<Reading>(surface.halfedges.kernel.n_edges(), read_edge);
+}
+
+PointLists AieScheme::points_of(const Surface& surface,
+                                std::span<const std::uint32_t> anchors) const {
+  PointLists lists;
+  for (const std::uint32_t anchor : anchors) {
+    std::vector<std::uint32_t> points;
+    if (anchor / kAlternatives < surface.halfedges.kernel.n_edges()) {
+      const auto around = neighbourhood_of(surface, anchor / kAlternatives, false, rule_of(anchor));
+      if (around) {
+        points.assign(around->basis.begin(), around->basis.end());
+        points.insert(points.end(), around->all_groups().begin(), around->all_groups().end());
+      }
+    }
+    std::sort(points.begin(), points.end());
+    lists.append(points);
+  }
+  return lists;
+}
+
+}  // namespace triglyph

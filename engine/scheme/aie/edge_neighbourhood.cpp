@@ -1,0 +1,170 @@
+#include "engine/scheme/aie/edge_neighbourhood.h"
+
+#include <algorithm>
+
+namespace triglyph {
+namespace {
+
+using Kernel = OpenMesh::TriConnectivity;
+using Halfedge = OpenMesh::HalfedgeHandle;
+
+// The points around one basis point, counter-clockwise.
+struct Ring {
+  std::array<std::uint32_t, EdgeNeighbourhood::kMaxPoints> points{};
+  std::size_t size = 0;
+
+  [[nodiscard]] bool contains(std::uint32_t point) const {
+    for (std::size_t i = 0; i < size; ++i) {
+      if (points[i] == point) return true;
+    }
+    return false;
+  }
+};
+
+// Nothing at a boundary or if the ring is too long.
+std::optional<Ring> ring_from(const Surface& surface, Halfedge first) {
+  const Kernel& kernel = surface.halfedges.kernel;
+  Ring ring;
+  Halfedge spoke = first;
+  do {
+    if (kernel.is_boundary(spoke) || ring.size == ring.points.size()) return std::nullopt;
+    ring.points[ring.size++] = surface.halfedges.point(kernel.to_vertex_handle(spoke));
+    spoke = kernel.opposite_halfedge_handle(kernel.prev_halfedge_handle(spoke));
+  } while (spoke != first);
+  return ring;
+}
+
+// The halfedge a -> b and the spokes from which the rings of a, b, c, d are walked.
+struct Frame {
+  Halfedge along;
+  std::array<Halfedge, 4> spokes;  // a -> b, b -> a, c -> a, d -> b
+  std::array<Halfedge, 4> outer;   // c -> a, d -> b, b -> c, a -> d: behind each lies a's, b's,
+                                   // c's, d's outer apex
+};
+
+Frame frame_of(const Kernel& kernel, std::uint32_t edge, bool reversed) {
+  const auto handle = OpenMesh::EdgeHandle(static_cast<int>(edge));
+  const Halfedge along = kernel.halfedge_handle(handle, reversed ? 1 : 0);
+  const Halfedge back = kernel.opposite_halfedge_handle(along);
+  const Halfedge from_c = kernel.prev_halfedge_handle(along);
+  const Halfedge from_d = kernel.prev_halfedge_handle(back);
+  return {along,
+          {along, back, from_c, from_d},
+          {from_c, from_d, kernel.next_halfedge_handle(along), kernel.next_halfedge_handle(back)}};
+}
+
+std::optional<std::uint32_t> apex_behind(const Surface& surface, Halfedge side) {
+  const Kernel& kernel = surface.halfedges.kernel;
+  const Halfedge across = kernel.opposite_halfedge_handle(side);
+  if (kernel.is_boundary(across)) return std::nullopt;
+  return surface.halfedges.point(kernel.to_vertex_handle(kernel.next_halfedge_handle(across)));
+}
+
+bool all_different(std::span<const std::uint32_t> points) {
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (points[i] == points[j]) return false;
+    }
+  }
+  return true;
+}
+
+std::optional<std::array<std::uint32_t, 4>> basis_in(const Surface& surface, const Frame& frame) {
+  const Kernel& kernel = surface.halfedges.kernel;
+  if (kernel.is_boundary(frame.spokes[0]) || kernel.is_boundary(frame.spokes[1])) {
+    return std::nullopt;
+  }
+  std::array<std::uint32_t, 4> basis{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    basis[i] = surface.halfedges.point(kernel.from_vertex_handle(frame.spokes[i]));
+  }
+  if (!all_different(basis)) return std::nullopt;
+  return basis;
+}
+
+// Collects the groups; says no where they cannot be told apart.
+class Grouping {
+ public:
+  Grouping(const Surface& surface, const Frame& frame, EdgeNeighbourhood& result)
+      : surface_(surface), frame_(frame), result_(result) {}
+
+  [[nodiscard]] bool collect(GroupRule rule) {
+    if (rule != GroupRule::OuterApexes && !walk_rings()) return false;
+    for (std::size_t k = 0; k < 4; ++k) {
+      result_.ends[k + 1] = result_.ends[k];
+      if (!collect_group(rule, k) || result_.ends[k + 1] == result_.ends[k]) return false;
+    }
+    std::array<std::uint32_t, EdgeNeighbourhood::kMaxPoints + 4> all{};
+    const auto groups = result_.all_groups();
+    std::copy(result_.basis.begin(), result_.basis.end(), all.begin());
+    std::copy(groups.begin(), groups.end(), all.begin() + 4);
+    return all_different({all.data(), 4 + groups.size()});
+  }
+
+ private:
+  bool walk_rings() {
+    for (std::size_t k = 0; k < 4; ++k) {
+      const std::optional<Ring> ring = ring_from(surface_, frame_.spokes[k]);
+      if (!ring) return false;
+      rings_[k] = *ring;
+    }
+    return true;
+  }
+
+  bool collect_group(GroupRule rule, std::size_t k) {
+    const bool with_apex = rule == GroupRule::OuterApexes || rule == GroupRule::NeighboursAndApexes;
+    if (rule != GroupRule::OuterApexes && !collect_exclusive(rule, k)) return false;
+    if (!with_apex) return true;
+    const std::optional<std::uint32_t> apex = apex_behind(surface_, frame_.outer[k]);
+    return apex && append(k, *apex);
+  }
+
+  bool collect_exclusive(GroupRule rule, std::size_t k) {
+    Ring exclusive;
+    for (std::size_t i = 0; i < rings_[k].size; ++i) {
+      const std::uint32_t point = rings_[k].points[i];
+      bool shared = std::count(result_.basis.begin(), result_.basis.end(), point) != 0;
+      for (std::size_t other = 0; other < 4; ++other) {
+        shared = shared || (other != k && rings_[other].contains(point));
+      }
+      if (!shared) exclusive.points[exclusive.size++] = point;
+    }
+    if (exclusive.size == 0) return false;
+    if (rule == GroupRule::MiddleNeighbours) return append(k, exclusive.points[exclusive.size / 2]);
+    for (std::size_t i = 0; i < exclusive.size; ++i) {
+      if (!append(k, exclusive.points[i])) return false;
+    }
+    return true;
+  }
+
+  bool append(std::size_t k, std::uint32_t point) {
+    if (result_.ends[k + 1] == EdgeNeighbourhood::kMaxPoints) return false;
+    result_.points[result_.ends[k + 1]++] = point;
+    return true;
+  }
+
+  const Surface& surface_;
+  const Frame& frame_;
+  EdgeNeighbourhood& result_;
+  std::array<Ring, 4> rings_;
+};
+
+}  // namespace
+
+std::optional<std::array<std::uint32_t, 4>> basis_of(const Surface& surface, std::uint32_t edge,
+                                                     bool reversed) {
+  return basis_in(surface, frame_of(surface.halfedges.kernel, edge, reversed));
+}
+
+std::optional<EdgeNeighbourhood> neighbourhood_of(const Surface& surface, std::uint32_t edge,
+                                                  bool reversed, GroupRule rule) {
+  const Frame frame = frame_of(surface.halfedges.kernel, edge, reversed);
+  const auto basis = basis_in(surface, frame);
+  if (!basis) return std::nullopt;
+  EdgeNeighbourhood result;
+  result.basis = *basis;
+  if (!Grouping(surface, frame, result).collect(rule)) return std::nullopt;
+  return result;
+}
+
+}  // namespace triglyph

@@ -1,0 +1,81 @@
+#include "engine/io/mapped_file.h"
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "engine/base/error.h"
+#include "engine/io/mesh_file.h"
+
+namespace triglyph {
+namespace {
+
+class Files : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = (std::filesystem::temp_directory_path() / "triglyph-test-XXXXXX").string();
+    ASSERT_NE(::mkdtemp(name.data()), nullptr);
+    folder_ = name;
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+    return folder_ / name;
+  }
+  static std::string reason(const std::filesystem::path& path) {
+    try {
+      (void)MeshFile::open(path);
+      return "opened";
+    } catch (const Error& error) {
+      return error.code() == ErrorCode::Unreadable ? error.message() : "another error";
+    }
+  }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(Files, AreMappedAsTheyAre) {
+  const auto path = write("a.obj", "v 1 2 3\n");
+  MappedFile file = MappedFile::open(path);
+  const MappedFile moved = std::move(file);
+  EXPECT_EQ(std::string(moved.bytes().begin(), moved.bytes().end()), "v 1 2 3\n");
+  EXPECT_EQ(MeshFile::open(path).vertex_count(), 1U);
+}
+
+TEST_F(Files, AreRefusedWithTheReason) {
+  EXPECT_EQ(reason(folder_ / "none.obj"), "cannot open: No such file or directory");
+  EXPECT_EQ(reason(folder_), "is a directory, not a regular file");
+  EXPECT_EQ(reason(write("empty.obj", "")), "is empty");
+  EXPECT_EQ(reason("/dev/null"), "is not a regular file");
+}
+
+TEST_F(Files, DoNotWaitForAPipe) {
+  const auto path = folder_ / "pipe.obj";
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  EXPECT_EQ(reason(path), "is not a regular file");
+}
+
+TEST_F(Files, NeedPermission) {
+  if (::geteuid() == 0) GTEST_SKIP() << "root may read everything";
+  const auto path = write("secret.obj", "v 1 2 3\n");
+  ASSERT_EQ(::chmod(path.c_str(), 0), 0);
+  EXPECT_EQ(reason(path), "cannot open: Permission denied");
+}
+
+TEST_F(Files, NeedAKnownEnding) {
+  try {
+    (void)MeshFile::open(write("a.gltf", "{}"));
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::Unsupported);
+    EXPECT_NE(std::string(error.what()).find(".gltf"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace triglyph

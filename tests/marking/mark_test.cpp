@@ -1,0 +1,258 @@
+#include "engine/marking/mark.h"
+
+#include <cmath>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "engine/base/error.h"
+#include "engine/marking/extract.h"
+#include "engine/marking/settle.h"
+#include "tests/support/arenas.h"
+#include "tests/support/attacks.h"
+#include "tests/support/shapes.h"
+
+namespace triglyph {
+namespace {
+
+const Message kMessage{'o', 'w', 'n', 'e', 'r', ' ', '4', '2'};
+
+Vec3 unrounded(const Vec3& p) {
+  return p;
+}
+
+const test::Solid& ball_for(const MarkOptions& options) {
+  return options.scheme == "iie" ? test::large_ball() : test::bumpy_ball();
+}
+
+Marking mark_ball(const MarkOptions& options = {}) {
+  return mark(ball_for(options).surface(), kMessage, Key::trial(), options, test::as_float, 1e-7);
+}
+
+Mesh marked_ball(const MarkOptions& options = {}) {
+  return {mark_ball(options).positions, ball_for(options).mesh.triangles};
+}
+
+Extraction read(const Mesh& mesh, const Key& key = Key::trial(), const MarkOptions& options = {}) {
+  const test::Solid solid(mesh);
+  const WordCode code(key, options.format);
+  return extract(solid.surface(), *make_scheme(options.scheme, code, options.scheme_options), code,
+                 options.scheme_options.doubtful_parts);
+}
+
+TEST(Mark, MessageComesBackAndEveryCarrierAgrees) {
+  const Marking marking = mark_ball();
+  EXPECT_EQ(marking.status, MarkStatus::Marked);
+  EXPECT_EQ(marking.carriers.size() + marking.units_dropped, marking.units_assigned);
+  const Extraction found = read({marking.positions, test::bumpy_ball().mesh.triangles});
+  EXPECT_EQ(found.message, kMessage);
+  EXPECT_GE(found.agreeing, marking.carriers.size());
+  EXPECT_EQ(found.parts, marking.words.size());
+  EXPECT_GT(found.agreement, 0.8);
+}
+
+TEST(Mark, MessagesOfOneTo256BytesComeBack) {
+  for (const std::size_t bytes : {1, 2, 16, 64, 256}) {
+    Message message(bytes);
+    for (std::size_t i = 0; i < bytes; ++i) message[i] = static_cast<std::uint8_t>(37 * i + bytes);
+    const Marking marking =
+        mark(test::bumpy_ball().surface(), message, Key::trial(), {}, test::as_float, 1e-7);
+    EXPECT_EQ(read({marking.positions, test::bumpy_ball().mesh.triangles}).message, message);
+  }
+}
+
+TEST(Mark, SurvivesReorderingSimilarityRoundingAndCropping) {
+  const Mesh marked = marked_ball();
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    EXPECT_EQ(read(test::shuffled(marked, seed)).message, kMessage) << seed;
+    EXPECT_EQ(read(test::moved_rigidly_and_scaled(marked, seed)).message, kMessage) << seed;
+    EXPECT_EQ(read(test::cropped_half(marked, seed)).message, kMessage) << seed;
+  }
+  EXPECT_EQ(read(test::with_significant_digits(marked, 6)).message, kMessage);
+  EXPECT_EQ(read(test::with_significant_digits(test::cropped_half(test::shuffled(marked, 1), 2), 6))
+                .message,
+            kMessage);
+}
+
+class EverySchemesMark : public testing::TestWithParam<std::string_view> {
+ protected:
+  MarkOptions options_ = default_mark_options(std::string(GetParam()), false);
+};
+INSTANTIATE_TEST_SUITE_P(All, EverySchemesMark,
+                         testing::ValuesIn(scheme_names().begin(), scheme_names().end()),
+                         [](const auto& scheme) { return std::string(scheme.param); });
+
+TEST_P(EverySchemesMark, AnotherKeyAndAnUnmarkedMeshYieldNothing) {
+  const Mesh marked = marked_ball(options_);
+  EXPECT_EQ(read(marked, Key::trial(), options_).message, kMessage);
+  for (int i = 0; i < 20; ++i) EXPECT_FALSE(read(marked, Key::generate(), options_).message);
+  EXPECT_FALSE(read(ball_for(options_).mesh, Key::trial(), options_).message);
+}
+
+// 200 unmarked meshes: no false alarm. With a 32-bit tag one is expected in 20 million such runs.
+TEST_P(EverySchemesMark, TwoHundredUnmarkedMeshesRaiseNoAlarm) {
+  const SampleShape shapes[] = {SampleShape::Closed, SampleShape::Open, SampleShape::HighGenus};
+  std::size_t markers = 0;
+  for (std::uint64_t i = 0; i < 200; ++i) {
+    const Extraction found =
+        read(make_sample_shape(shapes[i % 3], 1000 + 20 * i, i), Key::trial(), options_);
+    EXPECT_FALSE(found.message);
+    markers += found.readings.size();
+  }
+  EXPECT_GT(markers, 200U);  // chance look-alikes there are, so the tag has something to refuse
+}
+
+// A ball folded into itself, one inside out, one with collapsed faces, one of needles.
+std::vector<Mesh> hostile_meshes(const Mesh& ball) {
+  Mesh crossing = ball;
+  for (Vec3& p : crossing.positions) p[0] = std::abs(p[0]) - 0.3 * p[0] * p[0];
+  Mesh inside_out = ball;
+  for (Triangle& triangle : inside_out.triangles) std::swap(triangle[0], triangle[1]);
+  Mesh collapsed = ball;
+  for (std::size_t t = 0; t < ball.triangles.size(); t += 7) {
+    const Triangle& triangle = ball.triangles[t];
+    collapsed.positions[triangle[0]] = collapsed.positions[triangle[1]];
+  }
+  Mesh needles = ball;
+  for (std::size_t i = 0; i < needles.positions.size(); i += 3) needles.positions[i] *= 1e-9;
+  return {crossing, inside_out, collapsed, needles};
+}
+
+TEST_P(EverySchemesMark, HostileMeshesAreMarkedOrRefusedButNeverSpoilt) {
+  for (const Mesh& mesh : hostile_meshes(ball_for(options_).mesh)) {
+    const test::Solid solid(mesh);
+    const Marking marking =
+        mark(solid.surface(), kMessage, Key::trial(), options_, test::as_float, 1e-7);
+    for (const Vec3& p : marking.positions) {
+      EXPECT_TRUE(std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]));
+    }
+    EXPECT_TRUE(flipped_triangles(mesh.triangles, mesh.positions, marking.positions).empty());
+    if (marking.status == MarkStatus::Marked) {
+      EXPECT_EQ(read({marking.positions, mesh.triangles}, Key::trial(), options_).message,
+                kMessage);
+    } else {
+      EXPECT_TRUE(marking.status == MarkStatus::TooSmall ||
+                  marking.status == MarkStatus::TooCoarse);
+    }
+  }
+}
+
+TEST_P(EverySchemesMark, InsideOutIsNoObstacle) {
+  const Mesh mesh = hostile_meshes(ball_for(options_).mesh)[1];
+  const test::Solid solid(mesh);
+  const Marking marking =
+      mark(solid.surface(), kMessage, Key::trial(), options_, test::as_float, 1e-7);
+  ASSERT_EQ(marking.status, MarkStatus::Marked);
+  EXPECT_EQ(read({marking.positions, mesh.triangles}, Key::trial(), options_).message, kMessage);
+}
+
+TEST_P(EverySchemesMark, SheetsThatAreAllBoundaryAreTooSmall) {
+  Mesh soup;
+  for (std::uint32_t i = 0; i < 300; i += 3) {
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      soup.positions.emplace_back(i + (k == 1 ? 1 : 0), k == 2 ? 1 : 0, 0.1 * i);
+    }
+    soup.triangles.push_back({i, i + 1, i + 2});
+  }
+  const test::Solid solid(soup);
+  EXPECT_EQ(mark(solid.surface(), kMessage, Key::trial(), options_, unrounded, 0).status,
+            MarkStatus::TooSmall);
+}
+
+TEST(Mark, UnitsAreDisjointAndOnlyTheirPointsMove) {
+  const auto& ball = test::bumpy_ball();
+  const Marking marking = mark_ball();
+  std::size_t moved = 0;
+  for (std::size_t i = 0; i < marking.positions.size(); ++i) {
+    moved += marking.positions[i] != ball.mesh.positions[i] ? 1 : 0;
+  }
+  EXPECT_LE(moved, 6 * marking.carriers.size());
+  EXPECT_GT(moved, 3 * marking.carriers.size());
+  EXPECT_TRUE(
+      flipped_triangles(ball.mesh.triangles, ball.mesh.positions, marking.positions).empty());
+}
+
+TEST(Mark, OptimisedMovesLessThanUnoptimised) {
+  MarkOptions plain;
+  plain.layout.method = LayoutMethod::FirstFit;
+  plain.assign = AssignMethod::Sequential;
+  MarkOptions max;  // both with all repeats, so that they solve the same problem
+  max.max_move_rel_diag = 0;
+  MarkOptions sum = max;
+  sum.assign = AssignMethod::Sum;
+  const Marking unoptimised = mark_ball(plain);
+  const Marking bottleneck = mark_ball(max);
+  const Marking least_sum = mark_ball(sum);
+  EXPECT_LT(bottleneck.cost_max, 0.5 * unoptimised.cost_max);
+  EXPECT_LE(bottleneck.cost_max, least_sum.cost_max);
+  EXPECT_LE(least_sum.cost_sum, bottleneck.cost_sum);
+  EXPECT_GT(bottleneck.units_valid, unoptimised.units_valid);
+  EXPECT_LE(bottleneck.units_valid, bottleneck.units_bound);
+}
+
+TEST(Mark, RedundancyLeavesTheDearestUnitsOut) {
+  MarkOptions few;
+  few.redundancy = 4;
+  MarkOptions all;
+  all.redundancy = 0;
+  const Marking sparse = mark_ball(few);
+  const Marking full = mark_ball(all);
+  EXPECT_EQ(sparse.units_assigned, 4 * sparse.words.size());
+  EXPECT_GT(full.units_assigned, full.units_valid * 9 / 10);
+  EXPECT_LT(sparse.cost_max, full.cost_max);
+}
+
+TEST(Mark, FillGivesEveryUnitAPartOfItsOwn) {
+  const MarkOptions options = default_mark_options("tsq", true);
+  const auto& ball = test::bumpy_ball();
+  const Marking marking = mark(ball.surface(), {}, Key::trial(), options, test::as_float, 1e-7);
+  EXPECT_EQ(marking.words.size(), marking.units_valid);
+  EXPECT_GE(marking.carriers.size(), marking.units_valid * 95 / 100);
+  std::set<std::uint32_t> words;
+  for (const Carrier& carrier : marking.carriers) words.insert(carrier.word);
+  EXPECT_EQ(words.size(), marking.carriers.size());
+}
+
+TEST(Mark, TooSmallAndTooCoarseAreSaid) {
+  const test::Solid grid(test::flat_grid(3, 3));
+  EXPECT_EQ(mark(grid.surface(), kMessage, Key::trial(), {}, unrounded, 0).status,
+            MarkStatus::TooSmall);
+  const test::Solid tetrahedron(test::tetrahedron());
+  EXPECT_EQ(mark(tetrahedron.surface(), {}, Key::trial(), {}, unrounded, 0).status,
+            MarkStatus::TooSmall);
+  const double step = 0.01;  // about a third of an edge
+  const auto coarse = [&](const Vec3& p) {
+    return Vec3(std::round(p[0] / step), std::round(p[1] / step), std::round(p[2] / step)) * step;
+  };
+  EXPECT_EQ(mark(test::bumpy_ball().surface(), kMessage, Key::trial(), {}, coarse, step).status,
+            MarkStatus::TooCoarse);
+}
+
+TEST(Mark, RefusesUnknownSchemesAndCellWidths) {
+  MarkOptions options;
+  options.scheme = "xyz";
+  EXPECT_THROW((void)mark_ball(options), Error);
+  options = {};
+  options.scheme_options.step = 0;
+  EXPECT_THROW((void)mark_ball(options), Error);
+}
+
+TEST(Mark, DoesNotDependOnThreads) {
+  test::expect_same_for_any_threads([] {
+    const Marking marking = mark_ball();
+    return std::make_tuple(marking.positions, marking.carriers, marking.cost_sum);
+  });
+}
+
+TEST(Settle, TakesBackWhatFlipsAFace) {
+  const Mesh sheet = test::flat_grid(4, 4);
+  std::vector<Vec3> after = sheet.positions;
+  after[12] += Vec3(1.5, 0.2, 0);
+  EXPECT_FALSE(flipped_triangles(sheet.triangles, sheet.positions, after).empty());
+  after = sheet.positions;
+  after[12] += Vec3(0.2, 0.1, 0);
+  EXPECT_TRUE(flipped_triangles(sheet.triangles, sheet.positions, after).empty());
+}
+
+}  // namespace
+}  // namespace triglyph
