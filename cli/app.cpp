@@ -2,7 +2,9 @@
 
 #include <exception>
 #include <iostream>
+#include <stdexcept>
 
+#include "cli/config.h"
 #include "cli/verbs.h"
 #include "engine/base/error.h"
 
@@ -33,7 +35,7 @@ int exit_code_of(ErrorCode code) {
 int run_app(int argc, char** argv) try {
   CLI::App app("Hides a blind, invisible watermark in meshes and reads it back.", "triglyph");
   app.set_version_flag("--version", "triglyph " TRIGLYPH_VERSION);
-  app.set_config("--config", "", "Read options from a TOML file");
+  add_config_file(app);
   app.require_subcommand(1);
   Action action;
   add_mark_verb(app, action);
@@ -47,6 +49,8 @@ int run_app(int argc, char** argv) try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kDone : kUsageError;
+  } catch (const std::invalid_argument& error) {
+    return report(error, kUsageError);  // the parser's way to refuse the value of a flag
   }
   return action();
 } catch (const Error& error) {

@@ -8,6 +8,7 @@ inline constexpr int kDone = 0;
 inline constexpr int kFatal = 1;          // the run could not go on
 inline constexpr int kUsageError = 2;     // arguments, key file or manifest
 inline constexpr int kSomeFailed = 3;     // finished, but not every mesh is as it should be
+inline constexpr int kNoMark = 4;         // every file was read, but some carry no mark
 inline constexpr int kInterrupted = 130;  // whole files only; the run can be repeated
 
 [[nodiscard]] int run_app(int argc, char** argv);

@@ -1,23 +1,28 @@
+#include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <iostream>
 #include <memory>
 
 #include "cli/app.h"
 #include "cli/options.h"
+#include "cli/screen.h"
 #include "cli/verbs.h"
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
-#include "manifests/pipeline.h"
+#include "manifests/inputs.h"
+#include "manifests/json_line.h"
 #include "manifests/run.h"
 
 namespace triglyph {
 namespace {
 
 struct ExtractArguments {
-  std::vector<std::filesystem::path> meshes;
+  std::vector<std::string> inputs;
+  std::filesystem::path like;  // records
   bool json = false;
-  SchemeArguments scheme;
-  KeyArgument key;
+  OptionValues values;
+  KeysArgument keys;
   MachineArguments machine;
 };
 
@@ -29,56 +34,128 @@ std::string shown(const Message& message) {
                    : "0x" + to_hex(message);
 }
 
-void print_text(const std::filesystem::path& path, const Extraction& found) {
+// The exponent of the least power of two that is not below the chance.
+int power_of_two_above(double chance) {
+  return static_cast<int>(std::ceil(std::log2(chance)));
+}
+
+void print_text(const std::filesystem::path& path, const FileReading& reading,
+                std::span<const Key> keys) {
   std::cout << path.string() << ": ";
-  if (!found.message) {
+  if (!reading.mark) {
     std::cout << "no mark\n";
     return;
   }
-  std::cout << shown(*found.message) << "  " << found.agreeing << " units agree, " << found.parts
-            << " parts, false alarm 2^" << std::ilogb(found.false_alarm) << "\n";
+  const FoundMark& mark = *reading.mark;
+  std::cout << shown(mark.message) << "  " << mark.encoding.scheme << ", " << mark.agreeing
+            << " units agree, " << mark.parts << " parts, false alarm 2^"
+            << power_of_two_above(reading.false_alarm);
+  if (keys.size() > 1) std::cout << ", key " << keys[mark.key].fingerprint();
+  std::cout << "\n";
 }
 
-void print_json(const std::filesystem::path& path, const FileExtraction& file) {
-  const Extraction& found = file.extraction;
+void print_json(const std::filesystem::path& path, const FileReading& reading,
+                std::span<const Key> keys) {
   nlohmann::ordered_json json = {{"mesh", path.string()},
-                                 {"status", found.message ? "marked" : "no mark"},
-                                 {"vertices", file.vertices},
-                                 {"faces", file.faces},
-                                 {"units_with_marker", found.readings.size()}};
-  if (found.message) {
-    json["message_hex"] = to_hex(*found.message);
-    json["parts"] = found.parts;
-    json["units_agreeing"] = found.agreeing;
-    json["agreement"] = found.agreement;
-    json["false_alarm_bound"] = found.false_alarm;
+                                 {"status", reading.mark ? "marked" : "no mark"},
+                                 {"vertices", reading.vertices},
+                                 {"faces", reading.faces},
+                                 {"units_with_marker", reading.units_with_marker},
+                                 {"false_alarm_bound", reading.false_alarm}};
+  if (reading.mark) {
+    const FoundMark& mark = *reading.mark;
+    json["message_hex"] = to_hex(mark.message);
+    json["scheme"] = mark.encoding.scheme;
+    json["key"] = keys[mark.key].fingerprint();
+    json["parts"] = mark.parts;
+    json["units_agreeing"] = mark.agreeing;
+    json["agreement"] = mark.agreement;
   }
   std::cout << to_line(json);
 }
 
+// Prints results as they come and keeps what the exit code says of them.
+class ResultPrinter {
+ public:
+  ResultPrinter(std::span<const Key> keys, bool json) : keys_(keys), json_(json) {}
+
+  void print(const ReadResult& result) {
+    if (result.reading) {
+      all_marked_ = all_marked_ && result.reading->mark.has_value();
+      json_ ? print_json(result.path, *result.reading, keys_)
+            : print_text(result.path, *result.reading, keys_);
+      return;
+    }
+    all_readable_ = false;
+    std::cerr << "triglyph: " << result.error << "\n";
+    if (!json_) return;
+    std::cout << to_line({{"mesh", result.path.string()},
+                          {"status", name_of(*result.status)},
+                          {"error", result.error}});
+  }
+
+  [[nodiscard]] int exit_code() const {
+    if (!all_readable_) return kSomeFailed;
+    return all_marked_ ? kDone : kNoMark;
+  }
+
+ private:
+  std::span<const Key> keys_;
+  bool json_;
+  bool all_marked_ = true;
+  bool all_readable_ = true;
+};
+
+// How the marks of a run were written, each way once.
+std::vector<Encoding> encodings_in(const std::filesystem::path& records) {
+  std::ifstream stream(records);
+  if (std::filesystem::is_directory(records) || !stream) {
+    throw Error(ErrorCode::Unreadable, records, "", "the records cannot be read");
+  }
+  std::vector<Encoding> encodings;
+  std::size_t number = 0;
+  for (std::string line; std::getline(stream, line);) {
+    ++number;
+    try {
+      const Record record = parse_record(line);
+      if (!record.file.is_marked() || record.file.request.fill) continue;
+      Encoding encoding = record.file.encoding();
+      if (std::find(encodings.begin(), encodings.end(), encoding) == encodings.end()) {
+        encodings.push_back(std::move(encoding));
+      }
+    } catch (const Error& error) {
+      throw Error(ErrorCode::Malformed, records, at_line(number), error.message());
+    }
+  }
+  return encodings;
+}
+
 int run_extract(const ExtractArguments& arguments) {
-  const Key key = arguments.key.load();
-  JobSettings settings;
-  arguments.scheme.apply_to(settings);
-  bool all_marked = true;
-  with_threads(arguments.machine.threads(), [&] {
-    for (const std::filesystem::path& path : arguments.meshes) {
-      try {
-        const FileExtraction file = extract_file(path, key, settings.resolved());
-        all_marked = all_marked && file.extraction.message.has_value();
-        arguments.json ? print_json(path, file) : print_text(path, file.extraction);
-      } catch (const Error& error) {
-        all_marked = false;
-        std::cerr << "triglyph: " << error.what() << "\n";
-        if (arguments.json) {
-          const nlohmann::ordered_json json = {
-              {"mesh", path.string()}, {"status", name_of(error.code())}, {"error", error.what()}};
-          std::cout << to_line(json);
-        }
+  const std::vector<Key> keys = arguments.keys.load();
+  if (arguments.values.contains("scheme")) {
+    check_contradictions(arguments.values, scheme_of(arguments.values));
+  }
+  std::vector<Encoding> encodings = encodings_of(arguments.values);
+  if (!arguments.like.empty()) {
+    std::vector<Encoding> recorded = encodings_in(arguments.like);
+    for (Encoding& encoding : encodings) {
+      if (std::find(recorded.begin(), recorded.end(), encoding) == recorded.end()) {
+        recorded.push_back(std::move(encoding));
       }
     }
+    encodings = std::move(recorded);
+  }
+  const std::vector<std::filesystem::path> files = gather_files(arguments.inputs, std::cin);
+  ResultPrinter printer(keys, arguments.json);
+  const std::atomic<bool>& stop = interrupt_flag();
+  FlowOptions options;
+  options.memory_bytes = arguments.machine.memory_bytes();
+  with_threads(arguments.machine.threads(), [&] {
+    read_files(
+        files, encodings, keys, options, [&](const ReadResult& result) { printer.print(result); },
+        stop);
   });
-  return all_marked ? kDone : kSomeFailed;
+  return stop ? kInterrupted : printer.exit_code();
 }
 
 }  // namespace
@@ -86,11 +163,18 @@ int run_extract(const ExtractArguments& arguments) {
 void add_extract_verb(CLI::App& app, Action& action) {
   CLI::App* verb = app.add_subcommand("extract", "Read the message from meshes, blind");
   auto arguments = std::make_shared<ExtractArguments>();
-  verb->add_option("meshes", arguments->meshes, "Meshes to read")->required()->type_name("MESH...");
-  verb->add_flag("--json", arguments->json, "One JSON object a mesh");
-  arguments->scheme.add_to(*verb);
-  arguments->key.add_to(*verb);
+  verb->add_option("inputs", arguments->inputs,
+                   "Meshes, folders, globs, manifests (.jsonl), or - for a list on standard input")
+      ->required()
+      ->type_name("INPUT...");
+  verb->add_option("--like", arguments->like,
+                   "Also look for marks made as in these records, with another step or word format")
+      ->type_name("RECORDS");
+  verb->add_flag("--json", arguments->json, "Print one JSON object a mesh");
+  add_declared_options(*verb, encoding_option_specs(), arguments->values);
+  arguments->keys.add_to(*verb);
   arguments->machine.add_threads_to(*verb);
+  arguments->machine.add_memory_to(*verb);
   verb->callback(
       [&action, arguments] { action = [arguments] { return run_extract(*arguments); }; });
 }

@@ -11,7 +11,7 @@
 #include "engine/geometry/box.h"
 #include "engine/io/mesh_file.h"
 #include "engine/metric/comparison.h"
-#include "manifests/run.h"
+#include "manifests/json_line.h"
 
 namespace triglyph {
 namespace {
@@ -41,16 +41,17 @@ std::vector<std::string> chosen_metrics(const MeasureArguments& arguments, bool 
 }
 
 int run_measure(const MeasureArguments& arguments) {
-  const MeshFile original = MeshFile::open(arguments.original);
-  const MeshFile marked = MeshFile::open(arguments.marked);
-  const Mesh& first = original.mesh();
-  const Mesh& second = marked.mesh();
-  const bool same = have_same_triangles(first, second);
-  nlohmann::ordered_json json = {{"original", arguments.original.string()},
-                                 {"marked", arguments.marked.string()},
-                                 {"same_triangles", same},
-                                 {"diagonal", box_diagonal(first.positions)}};
+  nlohmann::ordered_json json;
   with_threads(arguments.machine.threads(), [&] {
+    const MeshFile original = MeshFile::open(arguments.original);
+    const MeshFile marked = MeshFile::open(arguments.marked);
+    const Mesh& first = original.mesh();
+    const Mesh& second = marked.mesh();
+    const bool same = have_same_triangles(first, second);
+    json = {{"original", arguments.original.string()},
+            {"marked", arguments.marked.string()},
+            {"same_triangles", same},
+            {"diagonal", box_diagonal(first.positions)}};
     for (const std::string& metric : chosen_metrics(arguments, same)) {
       for (const auto& [name, value] : compare(first, second, metric, arguments.tolerance)) {
         json[name] = value;

@@ -3,9 +3,61 @@
 #include <iostream>
 
 namespace triglyph {
+namespace {
+
+Key trial_key() {
+  std::cerr << "triglyph: warning: no --key-file, using the public trial key that anyone can read "
+               "and forge\n";
+  return Key::trial();
+}
+
+// What help shows behind the option's name.
+std::string type_name(const OptionSpec& spec) {
+  switch (spec.kind) {
+    case OptionKind::Flag:
+      return "";
+    case OptionKind::Count:
+    case OptionKind::Number:
+      return "N";
+    case OptionKind::Choice:
+      return CLI::detail::join(spec.choices, "|");
+    case OptionKind::Text:
+      return "TEXT";
+  }
+  return "";
+}
+
+// The line of help: what it is, its range and its default.
+std::string description(const OptionSpec& spec) {
+  std::string text = spec.help;
+  if (spec.kind == OptionKind::Count || spec.kind == OptionKind::Number) {
+    text += "; " + spec.domain();
+  }
+  if (!spec.default_text.empty()) text += " [" + spec.default_text + "]";
+  return text;
+}
+
+}  // namespace
 
 std::vector<std::string> strings(std::span<const std::string_view> names) {
   return {names.begin(), names.end()};
+}
+
+void add_declared_options(CLI::App& verb, const std::vector<OptionSpec>& specs,
+                          OptionValues& values) {
+  for (const OptionSpec& spec : specs) {
+    if (spec.kind == OptionKind::Flag) {
+      verb.add_flag_function(
+          spec.flag(), [&spec, &values](std::int64_t count) { values[spec.key] = count > 0; },
+          description(spec));
+      continue;
+    }
+    verb.add_option_function<std::string>(
+            spec.flag(),
+            [&spec, &values](const std::string& text) { values[spec.key] = spec.parsed(text); },
+            description(spec))
+        ->type_name(type_name(spec));
+  }
 }
 
 void KeyArgument::add_to(CLI::App& verb) {
@@ -14,52 +66,30 @@ void KeyArgument::add_to(CLI::App& verb) {
 }
 
 Key KeyArgument::load() const {
-  if (!file_.empty()) return Key::load(file_);
-  std::cerr << "triglyph: warning: no --key-file, using the public trial key that anyone can read "
-               "and forge\n";
-  return Key::trial();
+  return file_.empty() ? trial_key() : Key::load(file_);
 }
 
-void SchemeArguments::add_to(CLI::App& verb) {
-  verb.add_option("--scheme", scheme_, "Embedding scheme")
-      ->check(CLI::IsMember(strings(scheme_names())))
-      ->capture_default_str();
-  verb.add_option("--marker-bits", marker_bits_, "Bits of the marker, m [the scheme's]")
-      ->check(CLI::Range(0, 16));
-  verb.add_option("--subscript-bits", subscript_bits_,
-                  "Bits of the subscript, s; with --fill as few as needed [the scheme's]")
-      ->check(CLI::Range(1, 16));
-  verb.add_option("--part-bits", part_bits_, "Bits of the message in a unit, w [the scheme's]")
-      ->check(CLI::Range(2, 32));
-  verb.add_option("--step", step_, "Width of a quantiser cell, dimensionless [the scheme's]")
-      ->check(CLI::PositiveNumber);
-  verb.add_option("--radius-edges", radius_edges_,
-                  "Radius of the balls of iie in mean edge lengths [the scheme's]")
-      ->check(CLI::Range(2.0, 100.0));
-  verb.add_option("--radius", radius_, "The same in model units; then scaling is not survived")
-      ->check(CLI::PositiveNumber);
-  verb.add_option("--site-rings", site_rings_,
-                  "Rings within which one point may be a centre of iie; 0: all [the scheme's]")
-      ->check(CLI::Range(0, 8));
-  verb.add_option("--aie-groups", groups_, "Neighbours that carry a group's bits in aie")
-      ->check(CLI::IsMember({"one", "all"}))
-      ->capture_default_str();
+void KeysArgument::add_to(CLI::App& verb) {
+  verb.add_option("--key-file", files_,
+                  "Secret key made by keygen, may be given several times; a public trial key "
+                  "without it")
+      ->type_name("FILE")
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false);
 }
 
-void SchemeArguments::apply_to(JobSettings& settings) const {
-  settings.scheme = scheme_;
-  settings.marker_bits = marker_bits_;
-  settings.subscript_bits = subscript_bits_;
-  settings.part_bits = part_bits_;
-  settings.step = step_;
-  settings.groups = aie_groups(groups_);
-  settings.radius_edges = radius_edges_;
-  settings.radius = radius_;
-  settings.site_rings = site_rings_;
+std::vector<Key> KeysArgument::load() const {
+  if (files_.empty()) return {trial_key()};
+  std::vector<Key> keys;
+  for (const std::filesystem::path& file : files_) keys.push_back(Key::load(file));
+  return keys;
 }
 
 void MachineArguments::add_threads_to(CLI::App& verb) {
-  verb.add_option("--threads", threads_, "Threads to use [all]")->check(CLI::Range(1, 1024));
+  verb.add_option("--threads", threads_, "Threads to use [all]")
+      ->check(CLI::Range(1, 1024))
+      ->type_name("N");
 }
 
 void MachineArguments::add_memory_to(CLI::App& verb) {

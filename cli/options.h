@@ -1,8 +1,8 @@
 // Arguments that several verbs share, and what they become once they are known to make sense.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -10,12 +10,18 @@
 
 #include <CLI/CLI.hpp>
 
-#include "manifests/job.h"
+#include "engine/base/options.h"
+#include "engine/message/key.h"
 
 namespace triglyph {
 
 // Names to choose from, as the parser wants them.
 [[nodiscard]] std::vector<std::string> strings(std::span<const std::string_view> names);
+
+// Adds an option for every declaration to the verb; what the user gives is collected in `values`,
+// which must outlive the verb. A value out of range ends the parse with Error Usage.
+void add_declared_options(CLI::App& verb, const std::vector<OptionSpec>& specs,
+                          OptionValues& values);
 
 // --key-file. Without it the public trial key is used and a warning printed.
 class KeyArgument {
@@ -27,22 +33,14 @@ class KeyArgument {
   std::filesystem::path file_;
 };
 
-// Scheme and word format: what extraction must know beside the key.
-class SchemeArguments {
+// --key-file, any number of times.
+class KeysArgument {
  public:
   void add_to(CLI::App& verb);
-  void apply_to(JobSettings& settings) const;
+  [[nodiscard]] std::vector<Key> load() const;  // at least one
 
  private:
-  std::string scheme_ = "tsq";
-  std::optional<int> marker_bits_;
-  std::optional<int> subscript_bits_;
-  std::optional<int> part_bits_;
-  std::optional<double> step_;
-  std::optional<double> radius_edges_;
-  std::optional<double> radius_;
-  std::optional<int> site_rings_;
-  std::string groups_{name_of(AieGroups::One)};
+  std::vector<std::filesystem::path> files_;
 };
 
 // --threads and --memory.

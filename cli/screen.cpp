@@ -43,16 +43,17 @@ void print_table_heading(std::ostream& out) {
 }
 
 void print_table_row(std::ostream& out, const Record& record) {
-  const StageTimes& times = record.times;
+  const MarkedFile& file = record.file;
+  const StageTimes& times = file.times;
   const double seconds = times.load + times.mark + times.write + times.read_back + times.measure;
   const std::string distance =
-      record.status == Status::Marked ? format("%.5f%%", 100 * record.hausdorff_rel_diag) : "-";
+      file.is_marked() ? format("%.5f%%", 100 * file.hausdorff_rel_diag) : "-";
   out << format("%-32s %9llu %9llu %6u %6u %10s %6.2fs  ",
-                shortened(record.job.mesh.string(), 32).c_str(),
-                static_cast<unsigned long long>(record.vertices),
-                static_cast<unsigned long long>(record.faces), record.units_valid,
-                record.units_embedded, distance.c_str(), seconds)
-      << name_of(record.status) << "\n";
+                shortened(file.mesh.string(), 32).c_str(),
+                static_cast<unsigned long long>(file.vertices),
+                static_cast<unsigned long long>(file.faces), file.units_valid, file.units_embedded,
+                distance.c_str(), seconds)
+      << name_of(file.status) << "\n";
 }
 
 ProgressBar::ProgressBar(std::size_t total)

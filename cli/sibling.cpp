@@ -3,7 +3,6 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
-#include <cstring>
 #include <sstream>
 
 #include <fcntl.h>
@@ -33,7 +32,7 @@ std::vector<char*> argument_vector(const fs::path& program, const std::vector<st
 }
 
 [[noreturn]] void fail_to_start(const fs::path& program) {
-  throw Error(ErrorCode::Usage, program, "", std::strerror(errno));
+  throw Error(ErrorCode::Usage, program, "", system_reason(errno));
 }
 
 }  // namespace

@@ -4,11 +4,12 @@
 
 #include "cli/app.h"
 #include "cli/options.h"
+#include "cli/screen.h"
 #include "cli/verbs.h"
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
+#include "manifests/json_line.h"
 #include "manifests/run.h"
-#include "manifests/verify.h"
 
 namespace triglyph {
 namespace {
@@ -21,8 +22,8 @@ struct VerifyArguments {
   MachineArguments machine;
 };
 
-RecordedMark parse_line(const VerifyArguments& arguments, const std::string& line,
-                        std::size_t number) try {
+Record parse_line(const VerifyArguments& arguments, const std::string& line,
+                  std::size_t number) try {
   return parse_record(line);
 } catch (const Error& error) {
   throw Error(ErrorCode::Malformed, arguments.records, at_line(number), error.message());
@@ -59,12 +60,11 @@ void print_damage(const Verification& found) {
   std::cout << "\n";
 }
 
-void print(const VerifyArguments& arguments, const RecordedMark& recorded,
-           const Verification& found) {
+void print(const VerifyArguments& arguments, const Record& record, const Verification& found) {
   if (arguments.json) {
-    nlohmann::ordered_json json = {{"out", recorded.out.string()},
+    nlohmann::ordered_json json = {{"out", record.file.out.string()},
                                    {"verdict", name_of(found.verdict)},
-                                   {"units_recorded", recorded.units_embedded},
+                                   {"units_recorded", record.file.units_embedded},
                                    {"units_found", found.units_found}};
     if (!found.detail.empty()) json["detail"] = found.detail;
     if (found.damage) {
@@ -75,8 +75,8 @@ void print(const VerifyArguments& arguments, const RecordedMark& recorded,
     std::cout << to_line(json);
     return;
   }
-  std::cout << recorded.out.string() << ": " << name_of(found.verdict) << ", " << found.units_found
-            << " of " << recorded.units_embedded << " units";
+  std::cout << record.file.out.string() << ": " << name_of(found.verdict) << ", "
+            << found.units_found << " of " << record.file.units_embedded << " units";
   if (!found.detail.empty()) std::cout << " (" << found.detail << ")";
   std::cout << "\n";
   if (arguments.detail) print_damage(found);
@@ -88,17 +88,27 @@ int run_verify(const VerifyArguments& arguments) {
   if (std::filesystem::is_directory(arguments.records) || !stream) {
     throw Error(ErrorCode::Unreadable, arguments.records, "", "the records cannot be read");
   }
-  bool all_good = true;
-  with_threads(arguments.machine.threads(), [&] {
+  std::size_t number = 0;
+  const auto next_record = [&]() -> std::optional<Record> {
     std::string line;
-    for (std::size_t number = 1; std::getline(stream, line); ++number) {
-      const RecordedMark recorded = parse_line(arguments, line, number);
-      const Verification found = verify_file(recorded, key, arguments.detail);
-      all_good = all_good &&
-                 (found.verdict == FileVerdict::Intact || found.verdict == FileVerdict::NotMarked);
-      print(arguments, recorded, found);
-    }
+    if (!std::getline(stream, line)) return std::nullopt;
+    return parse_line(arguments, line, ++number);
+  };
+  bool all_good = true;
+  const std::atomic<bool>& stop = interrupt_flag();
+  FlowOptions options;
+  options.memory_bytes = arguments.machine.memory_bytes();
+  with_threads(arguments.machine.threads(), [&] {
+    verify_files(
+        next_record, key, arguments.detail, options,
+        [&](const Record& record, const Verification& found) {
+          all_good = all_good && (found.verdict == FileVerdict::Intact ||
+                                  found.verdict == FileVerdict::NotMarked);
+          print(arguments, record, found);
+        },
+        stop);
   });
+  if (stop) return kInterrupted;
   return all_good ? kDone : kSomeFailed;
 }
 
@@ -117,6 +127,7 @@ void add_verify_verb(CLI::App& app, Action& action) {
                  "--detail)");
   arguments->key.add_to(*verb);
   arguments->machine.add_threads_to(*verb);
+  arguments->machine.add_memory_to(*verb);
   verb->callback([&action, arguments] { action = [arguments] { return run_verify(*arguments); }; });
 }
 

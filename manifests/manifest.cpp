@@ -5,15 +5,15 @@
 #include <unordered_map>
 
 #include <fnmatch.h>
-#include <nlohmann/json.hpp>
 
 #include "engine/base/error.h"
+#include "manifests/json_line.h"
 
 namespace triglyph {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 bool has_wildcard(const std::string& text) {
   return text.find_first_of("*?[") != std::string::npos;
@@ -30,63 +30,6 @@ bool matches(fs::path::iterator pattern, fs::path::iterator pattern_end, fs::pat
   }
   return name != name_end && fnmatch(pattern->c_str(), name->c_str(), FNM_PERIOD) == 0 &&
          matches(rest, pattern_end, std::next(name), name_end);
-}
-
-// Applies one key of a manifest line to settings; false if it is none of theirs.
-bool apply(const std::string& key, const Json& value, JobSettings& settings) {
-  if (key == "message") {
-    const auto text = value.get<std::string>();
-    settings.message.assign(text.begin(), text.end());
-    settings.fill = false;
-  } else if (key == "message_hex") {
-    settings.message = from_hex(value.get<std::string>());
-    settings.fill = false;
-  } else if (key == "fill") {
-    settings.fill = value.get<bool>();
-  } else if (key == "scheme") {
-    settings.scheme = value.get<std::string>();
-  } else if (key == "layout") {
-    settings.layout = layout_method(value.get<std::string>());
-  } else if (key == "layout_iterations") {
-    settings.layout_search.iterations = value.get<std::uint32_t>();
-  } else if (key == "layout_seconds") {
-    settings.layout_search.seconds = value.get<double>();
-  } else if (key == "layout_seed") {
-    settings.layout_search.seed = value.get<std::uint64_t>();
-  } else if (key == "assign") {
-    settings.assign = assign_method(value.get<std::string>());
-  } else if (key == "aie_groups") {
-    settings.groups = aie_groups(value.get<std::string>());
-  } else if (key == "radius_edges") {
-    settings.radius_edges = value.get<double>();
-  } else if (key == "radius") {
-    settings.radius = value.get<double>();
-  } else if (key == "detail") {
-    settings.detail = value.get<bool>();
-  } else if (key == "site_rings") {
-    settings.site_rings = value.get<int>();
-  } else if (key == "conflicts") {
-    settings.conflict_rule = conflict_rule(value.get<std::string>());
-  } else if (key == "cost") {
-    settings.cost = cost_function(value.get<std::string>());
-  } else if (key == "redundancy") {
-    settings.redundancy = value.get<std::uint32_t>();
-  } else if (key == "drop_dearest") {
-    settings.drop_dearest = value.get<double>();
-  } else if (key == "max_move") {
-    settings.max_move_rel_diag = value.get<double>();
-  } else if (key == "marker_bits") {
-    settings.marker_bits = value.get<int>();
-  } else if (key == "subscript_bits") {
-    settings.subscript_bits = value.get<int>();
-  } else if (key == "part_bits") {
-    settings.part_bits = value.get<int>();
-  } else if (key == "step") {
-    settings.step = value.get<double>();
-  } else {
-    return false;
-  }
-  return true;
 }
 
 // Where the output of one mesh goes if its line does not name a file: below `directory`, as the
@@ -139,9 +82,16 @@ std::vector<fs::path> expand_glob(const fs::path& pattern) {
   return found;
 }
 
-ManifestReader::ManifestReader(const fs::path& manifest, const JobSettings& settings,
+struct ManifestReader::Line {
+  bool is_heading = false;
+  std::optional<std::string> mesh;
+  std::optional<std::string> out;
+  OptionValues values;
+};
+
+ManifestReader::ManifestReader(const fs::path& manifest, const OptionValues& values,
                                const fs::path& out_directory)
-    : manifest_(manifest), out_directory_(out_directory), defaults_(settings), stream_(manifest) {
+    : manifest_(manifest), out_directory_(out_directory), defaults_(values), stream_(manifest) {
   if (fs::is_directory(manifest) || !stream_) {
     throw Error(ErrorCode::Unreadable, manifest, "", "the manifest cannot be read");
   }
@@ -164,58 +114,83 @@ std::optional<Job> ManifestReader::next() {
   return job;
 }
 
-void ManifestReader::read_line(const std::string& line) try {
-  const Json object = Json::parse(line);
-  if (!object.is_object()) fail("a line holds one JSON object");
-  const bool heading = object.contains("triglyph");
-  if (heading && (object["triglyph"] != 1 || line_ != 1)) {
+ManifestReader::Line ManifestReader::parse(const std::string& text) const {
+  const Json object = parse_json_line(text);
+  Line line;
+  line.is_heading = object.contains("triglyph");
+  if (line.is_heading && (object["triglyph"] != 1 || line_ != 1)) {
     fail("\"triglyph\" stands in the first line and is 1");
   }
-  JobSettings settings = defaults_;
-  std::string out = default_out_;
-  const Json keys = heading ? object.value("defaults", Json::object()) : object;
-  for (const auto& [key, value] : keys.items()) {
-    if (key == "out") {
-      out = value.get<std::string>();
-    } else if ((key != "mesh" || heading) && !apply(key, value, settings)) {
-      fail("unknown key \"" + key + "\"");
+  const Json no_keys = Json::object();
+  if (line.is_heading) {
+    for (const auto& [key, value] : object.items()) {
+      if (key != "triglyph" && key != "defaults") fail("unknown key \"" + key + "\"");
+    }
+    if (object.contains("defaults") && !object["defaults"].is_object()) {
+      fail("\"defaults\" is an object");
     }
   }
-  if (heading) {
-    defaults_ = settings;
-    default_out_ = out;
-    return;
+  const Json& keys = !line.is_heading              ? object
+                     : object.contains("defaults") ? object["defaults"]
+                                                   : no_keys;
+  for (const auto& [key, value] : keys.items()) {
+    if (key == "out" || (key == "mesh" && !line.is_heading)) {
+      if (!value.is_string()) fail("\"" + key + "\" is a path");
+      (key == "out" ? line.out : line.mesh) = value.get<std::string>();
+      continue;
+    }
+    const OptionSpec* spec = find_mark_option(key);
+    if (spec == nullptr) fail("unknown key \"" + key + "\"");
+    line.values.emplace(key, spec->checked(option_value(key, value)));
   }
-  if (!object.contains("mesh")) fail("\"mesh\" is missing");
+  return line;
+}
+
+void ManifestReader::add_jobs(const Line& line) {
+  if (!line.mesh) fail("\"mesh\" is missing");
+  const OptionValues values = layered(defaults_, line.values);
+  check_contradictions(line.values, scheme_of(values));
+  const MarkRequest request = resolve(values);
+  const std::string out = line.out.value_or(default_out_);
   const fs::path base = manifest_.parent_path();
-  const fs::path pattern = base / object["mesh"].get<std::string>();
+  const fs::path pattern = base / *line.mesh;
   const std::vector<fs::path> meshes = expand_glob(pattern);
   if (meshes.empty()) fail("\"mesh\" matches no file: " + pattern.string());
+  const bool is_glob = has_wildcard(pattern.string());
   const bool names_file = !out.empty() && out.back() != '/';
-  if (names_file && has_wildcard(pattern.string())) fail("\"out\" of a glob must end in \"/\"");
+  if (names_file && is_glob) fail("\"out\" of a glob must end in \"/\"");
   if (out.empty() && out_directory_.empty()) fail("\"out\" is missing and no --out was given");
-  const fs::path root = has_wildcard(pattern.string()) ? glob_root(pattern) : base;
+  const fs::path root = is_glob ? glob_root(pattern) : base;
   for (const fs::path& mesh : meshes) {
     const fs::path target =
         names_file ? base / out
                    : place_below(out.empty() ? out_directory_ : base / out, mesh, root);
-    ready_.push_back({0, mesh, target, settings});
+    ready_.push_back({0, mesh, target, request});
   }
-} catch (const Json::exception& error) {
-  fail(error.what());
+}
+
+void ManifestReader::read_line(const std::string& text) try {
+  const Line line = parse(text);
+  if (!line.is_heading) {
+    add_jobs(line);
+    return;
+  }
+  check_contradictions(line.values, "");
+  defaults_ = layered(defaults_, line.values);
+  default_out_ = line.out.value_or(default_out_);
 } catch (const Error& error) {
-  if (error.code() == ErrorCode::Usage) fail(error.message());
+  if (error.path().empty()) fail(error.message());
   throw;
 }
 
-MeshList::MeshList(std::vector<fs::path> meshes, const JobSettings& settings,
+MeshList::MeshList(std::vector<fs::path> meshes, const OptionValues& values,
                    const fs::path& out_directory)
-    : meshes_(std::move(meshes)), settings_(settings), out_directory_(out_directory) {}
+    : meshes_(std::move(meshes)), request_(resolve(values)), out_directory_(out_directory) {}
 
 std::optional<Job> MeshList::next() {
   if (next_ == meshes_.size()) return std::nullopt;
   const fs::path& mesh = meshes_[next_];
-  return Job{next_++, mesh, out_directory_ / mesh.filename(), settings_};
+  return Job{next_++, mesh, out_directory_ / mesh.filename(), request_};
 }
 
 std::size_t check_plan(JobSource& jobs) {

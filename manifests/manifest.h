@@ -23,27 +23,31 @@ class JobSource {
   [[nodiscard]] virtual std::optional<Job> next() = 0;
 };
 
-// Keys of one line: mesh, out, message, message_hex, fill, scheme, layout, assign, cost,
-// redundancy, marker_bits, subscript_bits, part_bits, step; "defaults" takes all but mesh. A line's
-// "out" is a file, or a directory if it ends in "/"; without it the output goes to `out_directory`,
-// under the path below the manifest (or below the fixed part of the glob).
+// Keys of one line: mesh, out, and every option of marking (mark_option_specs); "defaults" takes
+// all but mesh. A line's "out" is a file, or a directory if it ends in "/"; without it the output
+// goes to `out_directory`, under the path below the manifest (or below the fixed part of the glob).
 class ManifestReader final : public JobSource {
  public:
-  // Throws Error Unreadable. Settings not named in the manifest are `settings`.
-  ManifestReader(const std::filesystem::path& manifest, const JobSettings& settings,
+  // Values that the manifest does not name are taken from `values`. Throws Error Unreadable.
+  ManifestReader(const std::filesystem::path& manifest, const OptionValues& values,
                  const std::filesystem::path& out_directory);
 
-  // Throws Error Malformed naming the manifest's line: bad JSON, unknown or ill-typed keys, a glob
-  // that matches nothing, no place for the output.
+  // Throws Error Malformed naming the manifest's line: bad JSON, keys that are unknown, come twice,
+  // contradict each other or have values out of range, a glob that matches nothing, no place for
+  // the output.
   [[nodiscard]] std::optional<Job> next() override;
 
  private:
+  struct Line;  // what a line says
+
   void read_line(const std::string& line);
+  [[nodiscard]] Line parse(const std::string& line) const;
+  void add_jobs(const Line& line);
   [[noreturn]] void fail(const std::string& message) const;
 
   std::filesystem::path manifest_;
   std::filesystem::path out_directory_;
-  JobSettings defaults_;
+  OptionValues defaults_;
   std::string default_out_;
   std::ifstream stream_;
   std::size_t line_ = 0;
@@ -54,13 +58,14 @@ class ManifestReader final : public JobSource {
 // Meshes named one by one; each output is `out_directory` / file name.
 class MeshList final : public JobSource {
  public:
-  MeshList(std::vector<std::filesystem::path> meshes, const JobSettings& settings,
+  // Throws Error Usage for values that make no request: see resolve().
+  MeshList(std::vector<std::filesystem::path> meshes, const OptionValues& values,
            const std::filesystem::path& out_directory);
   [[nodiscard]] std::optional<Job> next() override;
 
  private:
   std::vector<std::filesystem::path> meshes_;
-  JobSettings settings_;
+  MarkRequest request_;
   std::filesystem::path out_directory_;
   std::size_t next_ = 0;
 };

@@ -1,61 +1,26 @@
 #include "manifests/record.h"
 
-#include <array>
-
 #include "engine/base/error.h"
+#include "manifests/json_line.h"
 
 namespace triglyph {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct StatusName {
-  Status status;
-  std::string_view name;
-};
-constexpr std::array<StatusName, 11> kStatusNames{{{Status::Marked, "marked"},
-                                                   {Status::TooSmall, "too small"},
-                                                   {Status::TooCoarse, "positions too coarse"},
-                                                   {Status::NotVerified, "not verified"},
-                                                   {Status::Unreadable, "unreadable"},
-                                                   {Status::Malformed, "malformed"},
-                                                   {Status::Unsupported, "unsupported"},
-                                                   {Status::Unwritable, "unwritable"},
-                                                   {Status::Usage, "usage"},
-                                                   {Status::Failed, "failed"},
-                                                   {Status::Interrupted, "interrupted"}}};
-
-Status status_named(const std::string& name) {
-  for (const StatusName& known : kStatusNames) {
-    if (known.name == name) return known.status;
-  }
-  throw Error(ErrorCode::Malformed, {}, "", "unknown status \"" + name + "\"");
+[[noreturn]] void refuse(const std::string& reason) {
+  throw Error(ErrorCode::Malformed, {}, "", reason);
 }
 
-Json options_of(const Record& record) {
-  const MarkOptions& options = record.options;
-  const SchemeOptions& scheme = options.scheme_options;
-  Json json = {{"layout", name_of(options.layout.method)},
-               {"layout_iterations", options.layout.iterations},
-               {"layout_seconds", options.layout.seconds},
-               {"layout_seed", options.layout.seed},
-               {"conflicts", name_of(options.conflict_rule)},
-               {"assign", name_of(options.assign)},
-               {"cost", name_of(scheme.cost)},
-               {"redundancy", options.redundancy},
-               {"max_move_rel_diag", options.max_move_rel_diag},
-               {"drop_dearest", options.drop_dearest},
-               {"marker_bits", record.format.marker_bits},
-               {"subscript_bits", record.format.subscript_bits},
-               {"part_bits", record.format.part_bits},
-               {"step", scheme.step}};
-  if (options.scheme == "aie") json["aie_groups"] = name_of(scheme.groups);
-  if (options.scheme == "iie") {
-    json["radius_edges"] = scheme.radius_edges;
-    json["radius"] = scheme.radius;
-    json["centre_rings"] = scheme.centre_rings;
-    json["site_rings"] = scheme.site_rings;
-    json["doubtful_parts"] = scheme.doubtful_parts;
+// Every option that applied, in the order in which help lists them.
+Json options_of(const MarkedFile& file) {
+  MarkOptions options = file.request.options;
+  options.format = file.format;
+  const OptionValues values = values_of(options);
+  Json json = Json::object();
+  for (const OptionSpec& spec : mark_option_specs()) {
+    const auto found = values.find(spec.key);
+    if (found != values.end() && spec.key != "scheme") json[spec.key] = to_json(found->second);
   }
   return json;
 }
@@ -67,123 +32,151 @@ Json units_of(std::span<const Carrier> carriers) {
   return json;
 }
 
-std::vector<Carrier> units_in(const nlohmann::json& json, std::uint32_t parts) {
+std::vector<Carrier> units_in(const Json& json, std::uint32_t parts) {
   std::vector<Carrier> carriers;
   for (const auto& unit : json) {
     carriers.push_back({unit.at(0).get<std::uint32_t>(), unit.at(1).get<std::uint32_t>()});
     const bool ascends =
         carriers.size() < 2 || carriers[carriers.size() - 2].anchor < carriers.back().anchor;
-    if (!ascends || carriers.back().word >= parts) {
-      throw Error(ErrorCode::Malformed, {}, "", "units that cannot be");
-    }
+    if (!ascends || carriers.back().word >= parts) refuse("units that cannot be");
   }
   return carriers;
 }
 
-// What extraction must know of them.
-SchemeOptions scheme_options_of(const nlohmann::json& options) {
-  SchemeOptions scheme;
-  scheme.step = options.at("step").get<double>();
-  scheme.groups = aie_groups(options.value("aie_groups", std::string(name_of(scheme.groups))));
-  scheme.radius_edges = options.value("radius_edges", scheme.radius_edges);
-  scheme.radius = options.value("radius", scheme.radius);
-  scheme.doubtful_parts = options.value("doubtful_parts", scheme.doubtful_parts);
-  scheme.centre_rings = options.value("centre_rings", scheme.centre_rings);
-  scheme.site_rings = options.value("site_rings", scheme.site_rings);
-  return scheme;
+Json run_of(const Record& record) {
+  const StageTimes& times = record.file.times;
+  return {{"load_s", times.load},           {"mark_s", times.mark},
+          {"layout_s", times.layout},       {"assign_s", times.assign},
+          {"write_s", times.write},         {"read_back_s", times.read_back},
+          {"measure_s", times.measure},     {"memory_estimate", record.memory_estimate},
+          {"peak_bytes", record.peak_bytes}};
+}
+
+void read_run(const Json& run, Record& record) {
+  StageTimes& times = record.file.times;
+  const auto seconds = [&](const char* key, double& value) { value = run.value(key, 0.0); };
+  seconds("load_s", times.load);
+  seconds("mark_s", times.mark);
+  seconds("layout_s", times.layout);
+  seconds("assign_s", times.assign);
+  seconds("write_s", times.write);
+  seconds("read_back_s", times.read_back);
+  seconds("measure_s", times.measure);
+  record.memory_estimate = run.value("memory_estimate", std::uint64_t{0});
+  record.peak_bytes = run.value("peak_bytes", std::uint64_t{0});
+}
+
+// What a record says of the marking. Of schema 1, which wrote some options as shares, those that a
+// reader needs are taken: they mean the same in both.
+MarkRequest request_in(const Json& json, int schema) {
+  OptionValues values;
+  for (const auto& [key, value] : json.at("options").items()) {
+    const OptionSpec* spec = find_mark_option(key);
+    const bool was_share = schema == 1 && key == "drop_dearest";
+    if (spec != nullptr && !was_share) {
+      values.emplace(key, spec->checked(option_value(key, value)));
+    } else if (schema > 1) {
+      refuse("unknown option \"" + key + "\"");
+    }
+  }
+  values["scheme"] = json.at("scheme").get<std::string>();
+  values["fill"] = json.at("fill").get<bool>();
+  if (values["fill"] == OptionValue(false)) {
+    values["message_hex"] = json.at("message_hex").get<std::string>();
+  }
+  return resolve(values);
 }
 
 }  // namespace
 
-std::string_view name_of(Status status) {
-  for (const StatusName& known : kStatusNames) {
-    if (known.status == status) return known.name;
-  }
-  return "failed";
-}
-
-Json to_json(const Record& record, std::uint64_t peak_bytes) {
-  const JobSettings& settings = record.job.settings;
+Json to_json(const Record& record) {
+  const MarkedFile& file = record.file;
+  const MarkRequest& request = file.request;
   Json json = {{"schema", kRecordSchema},
-               {"mesh", record.job.mesh.string()},
-               {"out", record.job.out.string()},
-               {"scheme", settings.scheme},
-               {"status", name_of(record.status)}};
-  if (!record.error.empty()) json["error"] = record.error;
-  json.update(Json{{"file_format", record.file_format},
-                   {"vertices", record.vertices},
-                   {"points", record.points},
-                   {"faces", record.faces},
-                   {"candidates", record.candidates},
-                   {"units_valid", record.units_valid},
-                   {"units_assigned", record.units_assigned},
-                   {"units_embedded", record.units_embedded},
-                   {"units_bound", record.units_bound},
-                   {"parts", record.parts},
-                   {"fill", settings.fill}});
-  if (!settings.fill) {
-    json["message_hex"] = to_hex(settings.message);
-    json["message_bits"] = 8 * settings.message.size();
+               {"mesh", file.mesh.string()},
+               {"out", file.out.string()},
+               {"scheme", request.options.scheme},
+               {"status", name_of(file.status)}};
+  if (!file.error.empty()) json["error"] = file.error;
+  json.update(Json{{"file_format", file.file_format},
+                   {"vertices", file.vertices},
+                   {"points", file.points},
+                   {"faces", file.faces},
+                   {"candidates", file.candidates},
+                   {"units_valid", file.units_valid},
+                   {"units_assigned", file.units_assigned},
+                   {"units_embedded", file.units_embedded},
+                   {"units_bound", file.units_bound},
+                   {"parts", file.parts},
+                   {"fill", request.fill}});
+  if (!request.fill) {
+    json["message_hex"] = to_hex(request.message);
+    json["message_bits"] = 8 * request.message.size();
   } else {
-    json["message_bits"] = std::uint64_t{record.parts} * record.format.part_bits;
+    json["message_bits"] = std::uint64_t{file.parts} * file.format.part_bits;
   }
-  json.update(Json{{"cost_max", record.cost_max},
-                   {"cost_sum", record.cost_sum},
-                   {"hausdorff", record.hausdorff},
-                   {"hausdorff_rel_diag", record.hausdorff_rel_diag},
-                   {"displacement_max", record.displacement_max},
-                   {"displacement_rms", record.displacement_rms},
-                   {"input_hash", record.input_hash},
-                   {"output_hash", record.output_hash},
-                   {"key", record.key_fingerprint},
-                   {"options", options_of(record)}});
-  if (settings.wants_detail() && record.status == Status::Marked) {
-    json["units"] = units_of(record.units);
-  }
-  json.update(Json{{"run",
-                    {{"load_s", record.times.load},
-                     {"mark_s", record.times.mark},
-                     {"layout_s", record.times.layout},
-                     {"assign_s", record.times.assign},
-                     {"write_s", record.times.write},
-                     {"read_back_s", record.times.read_back},
-                     {"measure_s", record.times.measure},
-                     {"memory_estimate", record.memory_estimate},
-                     {"peak_bytes", peak_bytes}}}});
+  json.update(Json{{"cost_max", file.cost_max},
+                   {"cost_sum", file.cost_sum},
+                   {"hausdorff", file.hausdorff},
+                   {"hausdorff_rel_diag", file.hausdorff_rel_diag},
+                   {"displacement_max", file.displacement_max},
+                   {"displacement_rms", file.displacement_rms},
+                   {"input_hash", file.input_hash},
+                   {"output_hash", file.output_hash},
+                   {"key", file.key_fingerprint},
+                   {"options", options_of(file)}});
+  if (file.units) json["units"] = units_of(*file.units);
+  json["run"] = run_of(record);
   return json;
 }
 
-std::string to_line(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
-RecordedMark parse_record(const std::string& line) try {
-  const auto json = nlohmann::json::parse(line);
-  if (!json.is_object() || json.value("schema", 0) != kRecordSchema) {
-    throw Error(ErrorCode::Malformed, {}, "", "not a record of schema 1");
+Record parse_record(const std::string& line) try {
+  const Json json = parse_json_line(line);
+  const int schema = json.value("schema", 0);
+  if (schema < 1 || schema > kRecordSchema) {
+    refuse("not a record of schema 1 to " + std::to_string(kRecordSchema));
   }
-  RecordedMark mark;
-  mark.out = json.at("out").get<std::string>();
-  mark.status = status_named(json.at("status").get<std::string>());
-  mark.fill = json.at("fill").get<bool>();
-  if (!mark.fill) mark.message = from_hex(json.at("message_hex"));
-  const auto& options = json.at("options");
-  mark.options.scheme = json.at("scheme").get<std::string>();
-  mark.options.scheme_options = scheme_options_of(options);
-  mark.options.format = {options.at("marker_bits").get<int>(),
-                         options.at("subscript_bits").get<int>(),
-                         options.at("part_bits").get<int>()};
-  validate(mark.options.format);
-  mark.parts = json.at("parts").get<std::uint32_t>();
-  mark.units_embedded = json.at("units_embedded").get<std::uint32_t>();
-  mark.points = json.at("points").get<std::uint64_t>();
-  mark.faces = json.at("faces").get<std::uint64_t>();
-  if (json.contains("units")) mark.units = units_in(json.at("units"), mark.parts);
-  mark.output_hash = json.at("output_hash").get<std::string>();
-  mark.key_fingerprint = json.at("key").get<std::string>();
-  return mark;
-} catch (const nlohmann::json::exception& error) {
-  throw Error(ErrorCode::Malformed, {}, "", error.what());
+  Record record;
+  MarkedFile& file = record.file;
+  file.mesh = json.value("mesh", std::string());
+  file.out = json.at("out").get<std::string>();
+  const auto status = file_status(json.at("status").get<std::string>());
+  if (!status) refuse("unknown status " + json.at("status").dump());
+  file.status = *status;
+  file.error = json.value("error", std::string());
+  file.request = request_in(json, schema);
+  file.format = file.request.options.format;
+  file.file_format = json.value("file_format", std::string());
+  const auto count = [&](const char* key, std::uint32_t& value) {
+    value = json.value(key, std::uint32_t{0});
+  };
+  file.vertices = json.value("vertices", std::uint64_t{0});
+  file.points = json.at("points").get<std::uint64_t>();
+  file.faces = json.at("faces").get<std::uint64_t>();
+  count("candidates", file.candidates);
+  count("units_valid", file.units_valid);
+  count("units_assigned", file.units_assigned);
+  count("units_bound", file.units_bound);
+  file.parts = json.at("parts").get<std::uint32_t>();
+  file.units_embedded = json.at("units_embedded").get<std::uint32_t>();
+  const auto number = [&](const char* key, double& value) { value = json.value(key, 0.0); };
+  number("cost_max", file.cost_max);
+  number("cost_sum", file.cost_sum);
+  number("hausdorff", file.hausdorff);
+  number("hausdorff_rel_diag", file.hausdorff_rel_diag);
+  number("displacement_max", file.displacement_max);
+  number("displacement_rms", file.displacement_rms);
+  file.input_hash = json.value("input_hash", std::string());
+  file.output_hash = json.at("output_hash").get<std::string>();
+  file.key_fingerprint = json.at("key").get<std::string>();
+  if (json.contains("units")) file.units = units_in(json.at("units"), file.parts);
+  if (json.contains("run")) read_run(json.at("run"), record);
+  return record;
+} catch (const Json::exception& error) {
+  refuse(error.what());
+} catch (const Error& error) {
+  if (error.code() == ErrorCode::Malformed) throw;
+  refuse(error.message());
 }
 
 }  // namespace triglyph

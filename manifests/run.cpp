@@ -1,218 +1,153 @@
 #include "manifests/run.h"
 
-#include <algorithm>
-#include <exception>
-#include <variant>
+#include <new>
 
-#include <tbb/flow_graph.h>
-#include <tbb/task_arena.h>
+#include <sys/resource.h>
 
-#include "manifests/pipeline.h"
+#include "engine/base/error.h"
 
 namespace triglyph {
 namespace {
 
-using TaskPointer = std::shared_ptr<Task>;
+namespace fs = std::filesystem;
 
-// Jobs that may be known to the graph at once: enough to choose large ones first and to keep
-// records in order while one mesh takes long, few enough to cost no memory.
-constexpr std::size_t kWindow = 256;
-
-// A mesh has let go of its memory.
-struct Released {
-  std::uint64_t bytes = 0;
-};
-
-// Decides which waiting mesh may start: the largest that fits into the budget; a mesh larger than
-// the whole budget when nothing else is in work. Runs in a serial node, so it needs no lock.
-class Admission {
- public:
-  explicit Admission(std::uint64_t budget) : budget_(budget) {}
-
-  void wait(const TaskPointer& task) {
-    const auto larger = [](const TaskPointer& a, const TaskPointer& b) {
-      return a->record.memory_estimate > b->record.memory_estimate;
-    };
-    waiting_.insert(std::upper_bound(waiting_.begin(), waiting_.end(), task, larger), task);
-  }
-
-  void release(std::uint64_t bytes) {
-    in_work_ -= bytes;
-    --meshes_in_work_;
-  }
-
-  // The next mesh to start, or nothing.
-  TaskPointer admit() {
-    const auto fits = [&](const TaskPointer& task) {
-      return meshes_in_work_ == 0 || in_work_ + task->record.memory_estimate <= budget_;
-    };
-    const auto next = std::find_if(waiting_.begin(), waiting_.end(), fits);
-    if (next == waiting_.end()) return nullptr;
-    TaskPointer task = *next;
-    waiting_.erase(next);
-    in_work_ += task->record.memory_estimate;
-    ++meshes_in_work_;
-    return task;
-  }
-
- private:
-  std::uint64_t budget_;
-  std::uint64_t in_work_ = 0;
-  std::size_t meshes_in_work_ = 0;
-  std::vector<TaskPointer> waiting_;  // largest first
-};
-
-TaskPointer make_task(Job job) {
-  auto task = std::make_shared<Task>(std::move(job));
+std::uint64_t memory_of(const fs::path& path, bool fill) {
   std::error_code error;
-  const auto bytes = std::filesystem::file_size(task->record.job.mesh, error);
-  task->record.memory_estimate =
-      estimate_memory(error ? 0 : bytes, task->record.job.mesh.extension().string());
-  return task;
+  const auto bytes = fs::file_size(path, error);
+  return estimate_memory(error ? 0 : bytes, path, fill);
 }
 
-// load -> mark -> write -> read back -> measure of one mesh, between checks for an interrupt.
-class Stages {
- public:
-  Stages(const Key& key, const std::atomic<bool>& stop) : key_(key), stop_(stop) {}
+std::uint64_t peak_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
 
-  void run_load(Task& task) const {
-    if (!interrupted(task)) load(task);
+struct MarkItem final : FlowItem {
+  explicit MarkItem(Job&& job)
+      : marking(std::move(job.mesh), std::move(job.out), std::move(job.request)) {
+    index = job.index;
+    const MarkedFile& file = marking.result();
+    memory_estimate = memory_of(file.mesh, file.request.fill);
   }
-  void run_mark(Task& task) const {
-    if (!interrupted(task)) mark(task, key_);
-  }
-  void run_write(Task& task) const {
-    if (!interrupted(task)) write(task);
-  }
-  void run_read_back(Task& task) const { read_back(task, key_); }
-
- private:
-  bool interrupted(Task& task) const {
-    if (!stop_) return task.record.status == Status::Interrupted;
-    if (task.stands() || task.record.error.empty()) {
-      task.record.status = Status::Interrupted;
-      task.record.error = task.record.job.mesh.string() + ": interrupted";
-    }
-    return true;
-  }
-
-  const Key& key_;
-  const std::atomic<bool>& stop_;
+  FileMarking marking;
 };
 
-namespace flow = tbb::flow;
-
-// A message to the admission node: a mesh that waits, or memory that is free again.
-using Request = std::variant<TaskPointer, Released>;
-
-// source -> window -> admit -> load -> mark -> write -> read back -> measure -> in order -> record
-//             ^         ^                                              |                      |
-//             |         +------------------- memory released ---------+                      |
-//             +------------------------------ one more may be known -------------------------+
-class MarkGraph {
- public:
-  MarkGraph(JobSource& jobs, const Key& key, const RunOptions& options,
-            const std::function<void(const Record&)>& on_record, const std::atomic<bool>& stop)
-      : jobs_(jobs),
-        stop_(stop),
-        stages_(key, stop),
-        admission_(options.memory_bytes),
-        source_(graph_, [this](tbb::flow_control& control) { return next_task(control); }),
-        window_(graph_, kWindow),
-        announce_(graph_, flow::serial, [](const TaskPointer& task) { return Request(task); }),
-        admit_(graph_, flow::serial,
-               [this](const Request& request, auto& ports) { decide(request, ports); }),
-        load_(stage(&Stages::run_load)),
-        mark_(stage(&Stages::run_mark)),
-        write_(stage(&Stages::run_write)),
-        read_back_(stage(&Stages::run_read_back)),
-        measure_(graph_, flow::unlimited,
-                 [](const TaskPointer& task, auto& ports) {
-                   measure(*task);
-                   std::get<1>(ports).try_put(Released{task->record.memory_estimate});
-                   std::get<0>(ports).try_put(task);
-                 }),
-        in_order_(graph_, [](const TaskPointer& task) { return task->record.job.index; }),
-        record_(graph_, flow::serial, [&on_record](const TaskPointer& task) {
-          on_record(task->record);
-          return 1;
-        }) {
-    connect();
-  }
-
-  void run() {
-    source_.activate();
-    graph_.wait_for_all();
-    if (broken_manifest_) std::rethrow_exception(broken_manifest_);
-  }
-
- private:
-  using Stage = flow::function_node<TaskPointer, TaskPointer>;
-
-  Stage stage(void (Stages::*work)(Task&) const) {
-    return {graph_, flow::unlimited, [this, work](const TaskPointer& task) {
-              (stages_.*work)(*task);
-              return task;
-            }};
-  }
-
-  TaskPointer next_task(tbb::flow_control& control) {
-    try {
-      if (!stop_) {
-        if (std::optional<Job> job = jobs_.next()) return make_task(std::move(*job));
-      }
-    } catch (...) {
-      broken_manifest_ = std::current_exception();
-    }
-    control.stop();
-    return nullptr;
-  }
-
-  template <typename Ports>
-  void decide(const Request& request, Ports& ports) {
-    if (const auto* task = std::get_if<TaskPointer>(&request)) admission_.wait(*task);
-    if (const auto* released = std::get_if<Released>(&request)) admission_.release(released->bytes);
-    while (const TaskPointer task = admission_.admit()) std::get<0>(ports).try_put(task);
-  }
-
-  void connect() {
-    flow::make_edge(source_, window_);
-    flow::make_edge(window_, announce_);
-    flow::make_edge(announce_, admit_);
-    flow::make_edge(flow::output_port<0>(admit_), load_);
-    flow::make_edge(load_, mark_);
-    flow::make_edge(mark_, write_);
-    flow::make_edge(write_, read_back_);
-    flow::make_edge(read_back_, measure_);
-    flow::make_edge(flow::output_port<0>(measure_), in_order_);
-    flow::make_edge(flow::output_port<1>(measure_), admit_);
-    flow::make_edge(in_order_, record_);
-    flow::make_edge(record_, window_.decrementer());
-  }
-
-  JobSource& jobs_;
-  const std::atomic<bool>& stop_;
-  Stages stages_;
-  Admission admission_;
-  std::exception_ptr broken_manifest_;
-
-  flow::graph graph_;
-  flow::input_node<TaskPointer> source_;
-  flow::limiter_node<TaskPointer, int> window_;
-  flow::function_node<TaskPointer, Request> announce_;
-  flow::multifunction_node<Request, std::tuple<TaskPointer>> admit_;
-  Stage load_, mark_, write_, read_back_;
-  flow::multifunction_node<TaskPointer, std::tuple<TaskPointer, Request>> measure_;
-  flow::sequencer_node<TaskPointer> in_order_;
-  flow::function_node<TaskPointer, int> record_;
+struct ReadItem final : FlowItem {
+  ReadResult result;
 };
+
+struct VerifyItem final : FlowItem {
+  Record record;
+  Verification verification;
+};
+
+void read(ReadItem& item, std::span<const Encoding> encodings, std::span<const Key> keys) {
+  ReadResult& result = item.result;
+  const auto fail = [&](FileStatus status, const std::string& error) {
+    result.status = status;
+    result.error = error;
+  };
+  try {
+    result.reading = read_file(result.path, encodings, keys);
+  } catch (const Error& error) {
+    fail(file_status(name_of(error.code())).value_or(FileStatus::Failed), error.what());
+  } catch (const std::bad_alloc&) {
+    fail(FileStatus::Failed, result.path.string() + ": not enough memory");
+  } catch (const std::exception& error) {
+    fail(FileStatus::Failed, result.path.string() + ": " + error.what());
+  }
+}
+
+void verify(VerifyItem& item, const Key& key, bool locate) {
+  try {
+    item.verification = verify_file(item.record.file, key, locate);
+  } catch (const std::exception& error) {
+    item.verification.verdict = FileVerdict::Damaged;
+    item.verification.detail = item.record.file.out.string() + ": " + error.what();
+  }
+}
 
 }  // namespace
 
-void run_jobs(JobSource& jobs, const Key& key, const RunOptions& options,
+void run_jobs(JobSource& jobs, const Key& key, const FlowOptions& options,
               const std::function<void(const Record&)>& on_record, const std::atomic<bool>& stop) {
-  MarkGraph(jobs, key, options, on_record, stop).run();
+  using Stage = std::function<void(FileMarking&)>;
+  const auto unless_stopped = [&stop](const Stage& stage) {
+    return [stage, &stop](FlowItem& item) {
+      FileMarking& marking = static_cast<MarkItem&>(item).marking;
+      if (stop) marking.interrupt();
+      stage(marking);
+    };
+  };
+  // from the read-back on a mesh is nearly done, and finishing it loses nothing
+  const auto always = [](const Stage& stage) {
+    return [stage](FlowItem& item) { stage(static_cast<MarkItem&>(item).marking); };
+  };
+  Flow flow;
+  flow.next = [&jobs]() -> std::unique_ptr<FlowItem> {
+    std::optional<Job> job = jobs.next();
+    return job ? std::make_unique<MarkItem>(std::move(*job)) : nullptr;
+  };
+  flow.stages = {unless_stopped([](FileMarking& marking) { marking.load(); }),
+                 unless_stopped([&key](FileMarking& marking) { marking.mark(key); }),
+                 unless_stopped([](FileMarking& marking) { marking.write(); }),
+                 always([&key](FileMarking& marking) { marking.read_back(key); }),
+                 always([](FileMarking& marking) { marking.measure(); })};
+  flow.deliver = [&on_record](FlowItem& item) {
+    const MarkItem& done = static_cast<MarkItem&>(item);
+    on_record({done.marking.result(), done.index, done.memory_estimate, peak_bytes()});
+  };
+  run_flow(flow, options, stop);
+}
+
+void read_files(std::span<const fs::path> files, std::span<const Encoding> encodings,
+                std::span<const Key> keys, const FlowOptions& options,
+                const std::function<void(const ReadResult&)>& on_result,
+                const std::atomic<bool>& stop) {
+  Flow flow;
+  std::size_t next = 0;
+  flow.next = [&]() -> std::unique_ptr<FlowItem> {
+    if (next == files.size()) return nullptr;
+    auto item = std::make_unique<ReadItem>();
+    item->index = next;
+    item->result.path = files[next++];
+    item->memory_estimate = memory_of(item->result.path, false);
+    return item;
+  };
+  flow.stages = {[&](FlowItem& item) {
+    if (!stop) read(static_cast<ReadItem&>(item), encodings, keys);
+  }};
+  flow.deliver = [&](FlowItem& item) {
+    const ReadResult& result = static_cast<ReadItem&>(item).result;
+    if (result.reading || result.status) on_result(result);
+  };
+  run_flow(flow, options, stop);
+}
+
+void verify_files(const RecordSource& records, const Key& key, bool locate,
+                  const FlowOptions& options,
+                  const std::function<void(const Record&, const Verification&)>& on_verdict,
+                  const std::atomic<bool>& stop) {
+  Flow flow;
+  std::size_t next = 0;
+  flow.next = [&]() -> std::unique_ptr<FlowItem> {
+    std::optional<Record> record = records();
+    if (!record) return nullptr;
+    auto item = std::make_unique<VerifyItem>();
+    item->index = next++;
+    item->record = std::move(*record);
+    item->memory_estimate = memory_of(item->record.file.out, false);
+    return item;
+  };
+  flow.stages = {[&](FlowItem& item) {
+    if (!stop) verify(static_cast<VerifyItem&>(item), key, locate);
+  }};
+  flow.deliver = [&](FlowItem& item) {
+    const auto& done = static_cast<VerifyItem&>(item);
+    if (!stop) on_verdict(done.record, done.verification);
+  };
+  run_flow(flow, options, stop);
 }
 
 }  // namespace triglyph

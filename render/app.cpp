@@ -14,7 +14,7 @@
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
 #include "engine/io/mesh_file.h"
-#include "engine/scheme/scheme.h"
+#include "engine/scheme/registry.h"
 #include "render/colours.h"
 #include "render/comparison.h"
 #include "render/paper_figure.h"

@@ -6,6 +6,7 @@
 #include "engine/marking/mark.h"
 #include "engine/mesh/edge_graph.h"
 #include "engine/metric/hausdorff.h"
+#include "engine/scheme/registry.h"
 #include "render/colours.h"
 #include "render/ray_caster.h"
 
@@ -55,7 +56,7 @@ class PaperFigure {
         camera_(camera_for(mesh, options)),
         mark_options_(default_mark_options(scheme, true)) {
     mark_options_.scheme_options = fixed_for(mesh, mark_options_.scheme_options);
-    if (scheme == "iie") camera_.half_height += mark_options_.scheme_options.radius;  // for balls
+    if (scheme == "iie") camera_.half_height += radius();  // for balls
   }
 
   Image draw() {
@@ -76,6 +77,11 @@ class PaperFigure {
   }
 
  private:
+  // Of the balls of iie, model units.
+  [[nodiscard]] double radius() const {
+    return number_in(mark_options_.scheme_options, "radius", 0);
+  }
+
   [[nodiscard]] Marking marked() const {
     return mark(
         {mesh_, halfedges_}, {}, Key::trial(), mark_options_,
@@ -118,8 +124,7 @@ class PaperFigure {
     if (mark_options_.scheme == "iie") {
       const EdgeGraph graph = edge_graph(after);
       for (const std::uint32_t anchor : anchors) {
-        scene.balls.push_back(
-            {ball_centre(after, graph, anchor), mark_options_.scheme_options.radius});
+        scene.balls.push_back({ball_centre(after, graph, anchor), radius()});
       }
       return;
     }

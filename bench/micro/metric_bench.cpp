@@ -7,6 +7,7 @@
 #include "engine/mesh/halfedges.h"
 #include "engine/metric/comparison.h"
 #include "engine/samples/sample_shapes.h"
+#include "engine/scheme/registry.h"
 #include "tests/support/cgal_hausdorff.h"
 #include "tests/support/remeshing.h"
 
@@ -15,10 +16,11 @@ namespace {
 
 Mesh marked(const Mesh& mesh, const std::string& scheme) {
   const Halfedges halfedges = build_halfedges(mesh);
+  const SchemeDefaults defaults = scheme_info(scheme).defaults(false);
   MarkOptions options;
   options.scheme = scheme;
-  options.format = scheme_defaults(scheme).format;
-  options.scheme_options = scheme_defaults(scheme).options;
+  options.format = defaults.format;
+  options.scheme_options = defaults.options;
   return {mark(
               {mesh, halfedges}, Message{1, 2, 3, 4, 5, 6, 7, 8}, Key::trial(), options,
               [](const Vec3& point) { return point; }, 0)

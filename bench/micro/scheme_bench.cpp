@@ -9,6 +9,7 @@
 #include "engine/mesh/halfedges.h"
 #include "engine/samples/sample_shapes.h"
 #include "engine/scheme/iie/integral_invariants.h"
+#include "engine/scheme/registry.h"
 
 namespace triglyph {
 namespace {

@@ -9,6 +9,7 @@
 #include "engine/io/mesh_file.h"
 #include "engine/marking/extract.h"
 #include "engine/marking/mark.h"
+#include "engine/scheme/registry.h"
 #include "tests/support/attacks.h"
 #include "tests/support/remeshing.h"
 
@@ -102,7 +103,7 @@ class Subject {
       const Mesh attacked = as_float(attack(marked_, seed));
       const Halfedges halfedges = build_halfedges(attacked);
       const Extraction found =
-          extract({attacked, halfedges}, *scheme_, code_, options_.scheme_options.doubtful_parts);
+          extract({attacked, halfedges}, *scheme_, code_, doubtful_parts(options_.scheme_options));
       count += found.message == message_ ? 1 : 0;
     }
     return count;

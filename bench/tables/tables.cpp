@@ -11,7 +11,10 @@
 #include <vector>
 
 #include "engine/base/error.h"
-#include "manifests/run.h"
+#include "engine/marking/mark_file.h"
+#include "engine/scheme/registry.h"
+#include "manifests/json_line.h"
+#include "manifests/record.h"
 
 namespace triglyph {
 namespace {
@@ -23,7 +26,7 @@ struct Variant {
   LayoutMethod layout;
   AssignMethod assign;
   CostFunction cost = CostFunction::Displacement;
-  double drop_dearest = 0;
+  double drop_dearest_percent = 0;
 };
 
 constexpr Variant kPlain{"un-optimised", LayoutMethod::FirstFit, AssignMethod::Sequential};
@@ -42,10 +45,10 @@ std::vector<Variant> variants(bool slow_hausdorff) {
       {"cost rms", kGreedy, kBottleneck, CostFunction::Rms},
       {"cost rms, sum", kGreedy, AssignMethod::Sum, CostFunction::Rms},
       {"cost normal", kGreedy, kBottleneck, CostFunction::Normal},
-      {"5 % left out", kGreedy, kBottleneck, CostFunction::Displacement, 0.05},
-      {"20 % left out", kGreedy, kBottleneck, CostFunction::Displacement, 0.2},
-      {"40 % left out", kGreedy, kBottleneck, CostFunction::Displacement, 0.4},
-      {"60 % left out", kGreedy, kBottleneck, CostFunction::Displacement, 0.6},
+      {"5 % left out", kGreedy, kBottleneck, CostFunction::Displacement, 5},
+      {"20 % left out", kGreedy, kBottleneck, CostFunction::Displacement, 20},
+      {"40 % left out", kGreedy, kBottleneck, CostFunction::Displacement, 40},
+      {"60 % left out", kGreedy, kBottleneck, CostFunction::Displacement, 60},
   };
   if (slow_hausdorff)
     all.push_back({"cost hausdorff", kGreedy, kBottleneck, CostFunction::Hausdorff});
@@ -69,40 +72,34 @@ constexpr PaperRow kPaper[] = {
 
 struct Row {
   std::string mesh, scheme, variant;
-  Record record;
+  MarkedFile record;
 };
 
-Record mark_once(const fs::path& mesh, const JobSettings& settings, const fs::path& out) {
-  MeshList jobs({mesh}, settings, out);
-  Record result;
-  const std::atomic<bool> stop{false};
-  run_jobs(
-      jobs, Key::trial(), {}, [&](const Record& record) { result = record; }, stop);
+MarkedFile mark_once(const fs::path& mesh, const OptionValues& values, const fs::path& out) {
+  MarkedFile result = mark_file(mesh, out / mesh.filename(), resolve(values), Key::trial());
   fs::remove_all(out);
-  if (result.status != Status::Marked) std::fprintf(stderr, "note: %s\n", result.error.c_str());
+  if (!result.is_marked()) std::fprintf(stderr, "note: %s\n", result.error.c_str());
   return result;
 }
 
-JobSettings settings_of(const std::string& scheme, const Variant& variant) {
-  JobSettings settings;
-  settings.fill = true;
-  settings.scheme = scheme;
-  settings.layout = variant.layout;
-  settings.assign = variant.assign;
-  settings.cost = variant.cost;
-  settings.drop_dearest = variant.drop_dearest;
-  return settings;
+OptionValues values_of(const std::string& scheme, const Variant& variant) {
+  return {{"fill", true},
+          {"scheme", scheme},
+          {"layout", std::string(name_of(variant.layout))},
+          {"assign", std::string(name_of(variant.assign))},
+          {"cost", std::string(name_of(variant.cost))},
+          {"drop_dearest", variant.drop_dearest_percent}};
 }
 
 std::vector<Row> run_all(const fs::path& mesh, const std::string& scheme, bool slow) {
   const fs::path out = fs::temp_directory_path() / "triglyph-tables";
   // the optimised mark has the most units and so sets the bit plan for all
-  const Record first = mark_once(mesh, settings_of(scheme, kOptimised), out);
+  const MarkedFile first = mark_once(mesh, values_of(scheme, kOptimised), out);
   std::vector<Row> rows;
   for (const Variant& variant : variants(slow || scheme != "tsq")) {
-    JobSettings settings = settings_of(scheme, variant);
-    settings.subscript_bits = first.format.subscript_bits;
-    rows.push_back({mesh.stem().string(), scheme, variant.name, mark_once(mesh, settings, out)});
+    OptionValues values = values_of(scheme, variant);
+    values["subscript_bits"] = std::int64_t{first.format.subscript_bits};
+    rows.push_back({mesh.stem().string(), scheme, variant.name, mark_once(mesh, values, out)});
   }
   return rows;
 }
@@ -118,7 +115,7 @@ void print_variants(const std::vector<Row>& rows) {
   std::printf("%-16s %7s %8s %11s %11s %9s %9s\n", "", "valid", "embedded", "Hausdorff", "farthest",
               "step 1", "step 2");
   for (const Row& row : rows) {
-    const Record& r = row.record;
+    const MarkedFile& r = row.record;
     const double diagonal = r.hausdorff_rel_diag > 0 ? r.hausdorff / r.hausdorff_rel_diag : 0;
     std::printf("%-16s %7u %8u %9.4f %% %9.4f %% %7.3f s %7.3f s\n", row.variant.c_str(),
                 r.units_valid, r.units_embedded, percent(r.hausdorff_rel_diag),
@@ -134,8 +131,8 @@ const Row& named(const std::vector<Row>& rows, const std::string& variant) {
 
 // One line of the paper's tables, counting valid units or embedded ones.
 void print_paper_line(const std::vector<Row>& rows, bool embedded) {
-  const Record& plain = named(rows, kPlain.name).record;
-  const Record& best = named(rows, kOptimised.name).record;
+  const MarkedFile& plain = named(rows, kPlain.name).record;
+  const MarkedFile& best = named(rows, kOptimised.name).record;
   const double units = embedded ? plain.units_embedded : plain.units_valid;
   const double more = embedded ? best.units_embedded : best.units_valid;
   std::printf("%-11s %-4s %-9s %6.0f %6.0f %6.1f %% %7.3f s %8.4f %% %8.4f %% %6.1f %% %7.3f s",
@@ -165,7 +162,7 @@ void write_csv(const std::vector<std::vector<Row>>& runs, const fs::path& path) 
           "hausdorff_rel_diag,displacement_max,cost_max,cost_sum,layout_s,assign_s\n";
   for (const auto& rows : runs) {
     for (const Row& row : rows) {
-      const Record& r = row.record;
+      const MarkedFile& r = row.record;
       file << row.mesh << ',' << row.scheme << ",\"" << row.variant << "\"," << r.points << ','
            << r.candidates << ',' << r.units_bound << ',' << r.units_valid << ','
            << r.units_embedded << ',' << r.hausdorff << ',' << r.hausdorff_rel_diag << ','
@@ -181,7 +178,7 @@ void write_json(const std::vector<std::vector<Row>>& runs, const fs::path& path)
   for (const auto& rows : runs) {
     for (const Row& row : rows) {
       nlohmann::ordered_json json = {{"variant", row.variant}};
-      json.update(to_json(row.record, 0));
+      json.update(to_json(Record{.file = row.record}));
       file << to_line(json);
     }
   }

@@ -1,5 +1,6 @@
 #include "engine/base/error.h"
 
+#include <system_error>
 #include <utility>
 
 namespace triglyph {
@@ -50,6 +51,10 @@ std::string at_byte(std::size_t offset) {
 void check(bool promise, const char* text, const char* file, int line) {
   if (promise) return;
   throw std::logic_error(std::string(file) + ":" + std::to_string(line) + ": " + text);
+}
+
+std::string system_reason(int number) {
+  return std::generic_category().message(number);
 }
 
 }  // namespace triglyph

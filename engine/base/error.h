@@ -42,6 +42,9 @@ class Error : public std::runtime_error {
 [[nodiscard]] std::string at_line(std::size_t line);
 [[nodiscard]] std::string at_byte(std::size_t offset);
 
+// Returns what the system says of an errno. Unlike strerror() it may be called from any thread.
+[[nodiscard]] std::string system_reason(int number);
+
 // Ends in std::logic_error naming the caller's file and line if the promise is broken; always on.
 void check(bool promise, const char* text, const char* file = __builtin_FILE(),
            int line = __builtin_LINE());

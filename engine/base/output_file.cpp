@@ -3,7 +3,6 @@
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <string>
 #include <utility>
 
@@ -65,7 +64,7 @@ void OutputFile::commit() {
 }
 
 void OutputFile::fail(int error) const {
-  throw Error(ErrorCode::Unwritable, path_, "", std::strerror(error));
+  throw Error(ErrorCode::Unwritable, path_, "", system_reason(error));
 }
 
 }  // namespace triglyph

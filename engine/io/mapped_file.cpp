@@ -2,7 +2,6 @@
 
 #include <cerrno>
 #include <string>
-#include <system_error>
 #include <utility>
 
 #include <fcntl.h>
@@ -31,11 +30,6 @@ class Descriptor {
 
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& reason) {
   throw Error(ErrorCode::Unreadable, path, "", reason);
-}
-
-// strerror() shares a buffer between threads; the category's message does not.
-std::string system_reason(int number) {
-  return std::generic_category().message(number);
 }
 
 }  // namespace

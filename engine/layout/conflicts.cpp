@@ -1,9 +1,11 @@
 #include "engine/layout/conflicts.h"
 
-#include "engine/base/error.h"
+#include <array>
 
 namespace triglyph {
 namespace {
+
+constexpr std::array<std::string_view, 2> kNames = {"read-write", "shared-point"};
 
 // The units on each point, ascending.
 PointLists transpose(const PointLists& lists, std::size_t points) {
@@ -21,15 +23,12 @@ PointLists transpose(const PointLists& lists, std::size_t points) {
 
 }  // namespace
 
-std::string_view name_of(ConflictRule rule) {
-  return rule == ConflictRule::ReadWrite ? "read-write" : "shared-point";
+std::span<const std::string_view> conflict_names() {
+  return kNames;
 }
 
-ConflictRule conflict_rule(const std::string& name) {
-  for (const ConflictRule rule : {ConflictRule::ReadWrite, ConflictRule::SharedPoint}) {
-    if (name == name_of(rule)) return rule;
-  }
-  throw Error(ErrorCode::Usage, {}, "", "unknown rule of conflicts '" + name + "'");
+std::string_view name_of(ConflictRule rule) {
+  return kNames.at(static_cast<std::size_t>(rule));
 }
 
 Conflicts::Conflicts(const PointLists& moved, const PointLists& read, std::size_t points,

@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <span>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -17,9 +16,9 @@ enum class ConflictRule {
   SharedPoint,  // the paper's: no point in common, moved or read
 };
 
-// "read-write", "shared-point"; the inverse throws Error Usage.
+// Names by ConflictRule: "read-write", "shared-point".
+[[nodiscard]] std::span<const std::string_view> conflict_names();
 [[nodiscard]] std::string_view name_of(ConflictRule rule);
-[[nodiscard]] ConflictRule conflict_rule(const std::string& name);
 
 class Conflicts {
  public:

@@ -35,8 +35,8 @@ struct LayoutOptions {
   std::uint32_t iterations = 64;
   double seconds = 0;  // 0: by iterations
   std::uint64_t seed = 1;
-  // What each unit is worth, > 0, at most 1; empty: 1. Local search only; the others count units.
-  std::span<const float> weights = {};
+
+  bool operator==(const LayoutOptions&) const = default;
 };
 
 // Units of a maximal independent set, ascending.

@@ -39,19 +39,14 @@ struct Site {
 
 struct Solution {
   const ConflictGraph& graph;
-  std::span<const float> weights;  // empty: 1 each
   std::vector<Site> sites;
-
-  [[nodiscard]] double weight(std::uint32_t unit) const {
-    return weights.empty() ? 1.0 : static_cast<double>(weights[unit]);
-  }
 };
 
 // One block's search in one round. Touches the sites of its own block only.
 class Walker {
  public:
   Walker(Solution& solution, std::span<const std::uint32_t> block, std::uint64_t stream)
-      : graph_(solution.graph), solution_(solution), sites_(solution.sites), stream_(stream) {
+      : graph_(solution.graph), sites_(solution.sites), stream_(stream) {
     for (const std::uint32_t unit : block) {
       if (!sites_[unit].is_movable) continue;
       movable_.push_back(unit);
@@ -69,9 +64,9 @@ class Walker {
       const auto swaps = static_cast<double>(swaps_.size());
       const double pick = unit_random() * (std::max(swaps, 1.0) + uphill);
       if (pick < swaps) {
-        swap(swaps_[static_cast<std::size_t>(pick)], temperature);
+        swap(swaps_[static_cast<std::size_t>(pick)]);
       } else if (pick >= std::max(swaps, 1.0)) {
-        climb(movable_[random() % movable_.size()], temperature);
+        climb(movable_[random() % movable_.size()]);
       }
       fill();
     }
@@ -80,31 +75,24 @@ class Walker {
  private:
   [[nodiscard]] std::uint64_t random() { return mix_bits(stream_ ^ drawn_++); }
   [[nodiscard]] double unit_random() { return static_cast<double>(random() >> 11) * 0x1.0p-53; }
-  [[nodiscard]] bool accepts(double gain, double temperature) {
-    return gain >= 0 || unit_random() < std::exp(gain / temperature);
-  }
 
-  void swap(std::uint32_t unit, double temperature) {
+  void swap(std::uint32_t unit) {
     const std::uint32_t blocker = sites_[unit].blocker_sum;
     if (!sites_[blocker].is_movable) return;
-    if (!accepts(solution_.weight(unit) - solution_.weight(blocker), temperature)) return;
     remove(blocker);
     insert(unit);
   }
 
   // Takes the place of two units. The walk proposes that at the rate of a loss of one unit.
-  void climb(std::uint32_t unit, double temperature) {
+  void climb(std::uint32_t unit) {
     if (sites_[unit].blockers != 2 || sites_[unit].is_chosen) return;
     std::array<std::uint32_t, 2> blockers{};
     std::size_t found = 0;
-    double gain = solution_.weight(unit) + 1;
     for (const std::uint32_t other : graph_.neighbours(unit)) {
       if (!sites_[other].is_chosen) continue;
       if (!sites_[other].is_movable) return;
-      gain -= solution_.weight(other);
       blockers.at(found++) = other;
     }
-    if (!accepts(gain, temperature)) return;
     for (const std::uint32_t blocker : blockers) remove(blocker);
     insert(unit);
   }
@@ -161,7 +149,6 @@ class Walker {
   }
 
   const ConflictGraph& graph_;
-  Solution& solution_;
   std::vector<Site>& sites_;
   std::uint64_t stream_;
   std::uint64_t drawn_ = 0;
@@ -206,7 +193,7 @@ class Search {
  public:
   Search(const ConflictGraph& graph, const LayoutOptions& options)
       : options_(options),
-        solution_{graph, options.weights, std::vector<Site>(graph.size())},
+        solution_{graph, std::vector<Site>(graph.size())},
         cuts_(cut_graph(graph, options.seed)) {}
 
   // Without moving what stands, takes every unit that nothing blocks; keeps the result if it is the
@@ -222,14 +209,11 @@ class Search {
       }
     }
     std::vector<std::uint32_t> chosen;
-    double total = 0;
     for (std::uint32_t unit = 0; unit < solution_.sites.size(); ++unit) {
       if (!solution_.sites[unit].is_chosen) continue;
       chosen.push_back(unit);
-      total += solution_.weight(unit);
     }
-    if (total <= best_total_ && !best_.empty()) return;
-    best_total_ = total;
+    if (chosen.size() <= best_.size() && !best_.empty()) return;
     best_ = std::move(chosen);
   }
 
@@ -255,7 +239,6 @@ class Search {
   Solution solution_;
   std::vector<GraphBlocks> cuts_;
   std::vector<std::uint32_t> best_;
-  double best_total_ = 0;
 };
 
 }  // namespace

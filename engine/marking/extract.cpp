@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/message/decode.h"
+#include "engine/scheme/registry.h"
 
 namespace triglyph {
 
@@ -28,6 +29,12 @@ Extraction extract(const Surface& surface, const Scheme& scheme, const WordCode&
     result.agreement = std::min(result.agreement, votes.agreement(index));
   }
   return result;
+}
+
+Extraction extract(const Surface& surface, const Encoding& encoding, const Key& key) {
+  const WordCode code(key, encoding.format);
+  const auto scheme = make_scheme(encoding.scheme, code, encoding.scheme_options);
+  return extract(surface, *scheme, code, doubtful_parts(encoding.scheme_options));
 }
 
 }  // namespace triglyph

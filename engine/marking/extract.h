@@ -6,6 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "engine/marking/options.h"
+#include "engine/message/key.h"
 #include "engine/message/votes.h"
 #include "engine/message/words.h"
 #include "engine/scheme/scheme.h"
@@ -24,5 +26,9 @@ struct Extraction {
 // O(triangles).
 [[nodiscard]] Extraction extract(const Surface& surface, const Scheme& scheme, const WordCode& code,
                                  int doubtful_parts = 0);
+
+// The same with the scheme and the word format of an encoding. Throws Error Usage for one that
+// cannot be.
+[[nodiscard]] Extraction extract(const Surface& surface, const Encoding& encoding, const Key& key);
 
 }  // namespace triglyph

@@ -11,7 +11,7 @@
 #include "engine/marking/select_units.h"
 #include "engine/marking/settle.h"
 #include "engine/mesh/edge_length.h"
-#include "engine/metric/hausdorff.h"
+#include "engine/scheme/registry.h"
 
 namespace triglyph {
 namespace {
@@ -80,7 +80,7 @@ Marking mark(const Surface& surface, std::span<const std::uint8_t> message, cons
   const WordCode first_code(key, options.format);
   if (!fill) marking.words = first_code.words_of(message);
   const auto scheme_for = [&](const WordCode& code) {
-    return make_scheme(options.scheme, code, options.scheme_options);
+    return make_scheme(options.scheme, code, options.scheme_options, options.cost);
   };
 
   // step 1: which units there are
@@ -110,7 +110,8 @@ Marking mark(const Surface& surface, std::span<const std::uint8_t> message, cons
 
   // step 2: which word each unit carries; what proves impossible is dealt out anew
   const auto scheme = scheme_for(code);
-  const double limit = fill ? 0 : options.max_move_rel_diag * box_diagonal(surface.mesh.positions);
+  const double limit =
+      fill ? 0 : options.max_move_percent / 100 * box_diagonal(surface.mesh.positions);
   WordAssigner assigner(surface, *scheme, units, valid, marking.words, options, limit);
   const bool once = fill || options.assign == AssignMethod::Sequential;
   for (int round = 0; round < (once ? 1 : kMaxRounds); ++round) {
@@ -128,7 +129,7 @@ Marking mark(const Surface& surface, std::span<const std::uint8_t> message, cons
   marking.parts_carried = count_parts(marking);
   if (!fill && marking.parts_carried < marking.words.size()) marking.status = MarkStatus::TooSmall;
   const bool mostly_lost = 2 * marking.units_dropped > marking.units_assigned;
-  const double cell = options.scheme_options.step * mean_edge_length(surface.mesh);
+  const double cell = number_in(options.scheme_options, "step", 0) * mean_edge_length(surface.mesh);
   if (mostly_lost && number_step > 0.05 * cell) marking.status = MarkStatus::TooCoarse;
   return marking;
 }

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "engine/marking/marking.h"
+#include "engine/marking/options.h"
 #include "engine/message/key.h"
 
 namespace triglyph {

@@ -1,51 +1,14 @@
-// What marking is told and what it answers; mark.h puts the one into the other.
+// What marking answers.
 #pragma once
 
 #include <cstdint>
 #include <functional>
-#include <string>
-#include <string_view>
 #include <vector>
 
-#include "engine/layout/layout.h"
 #include "engine/message/words.h"
 #include "engine/scheme/scheme.h"
 
 namespace triglyph {
-
-enum class AssignMethod {
-  Sequential,  // un-optimised: the i-th unit carries the i-th word
-  Bottleneck,  // least maximum of the costs, and of those the least sum (the paper's eq. 3)
-  Sum,         // least sum of the costs (eq. 2)
-};
-
-// "sequential", "bottleneck", "sum"; the inverse throws Error Usage.
-[[nodiscard]] std::string_view name_of(AssignMethod method);
-[[nodiscard]] AssignMethod assign_method(const std::string& name);
-
-struct MarkOptions {
-  std::string scheme = "tsq";
-  WordFormat format;
-  SchemeOptions scheme_options;
-  ConflictRule conflict_rule = ConflictRule::ReadWrite;
-  LayoutOptions layout;
-  AssignMethod assign = AssignMethod::Bottleneck;
-  std::uint32_t redundancy = 32;  // wanted units a part; 0: as many as there are
-  // A unit that would move a point farther than this share of the bounding box's diagonal is used
-  // only if its part has fewer than kMinRedundancy others, and never if it is ten times as far.
-  // 0: no limit. Not for sequential or fill.
-  double max_move_rel_diag = 0.001;
-  // This share of the candidates, 0 up to 1, is left out: those whose cheapest word costs most.
-  // Less capacity, and a less visible mark, since a unit that is dear under every word is a floor
-  // of the bottleneck that no assignment gets below (TSQ: the marker's own cost).
-  double drop_dearest = 0;
-  // Fill uses format.subscript_bits as they are, instead of as few as tell the units apart.
-  bool keeps_subscript_bits = false;
-};
-
-// The options with which a scheme marks a message or fills a mesh unless the user says otherwise.
-// Throws Error Usage for an unknown scheme.
-[[nodiscard]] MarkOptions default_mark_options(const std::string& scheme, bool fill);
 
 enum class MarkStatus {
   Marked,

@@ -8,12 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include "engine/marking/marking.h"
+#include "engine/marking/options.h"
 
 namespace triglyph {
 
 // Every part gets at least this many units where there are enough; more only as long as no point
-// moves farther than MarkOptions::max_move_rel_diag.
+// moves farther than MarkOptions::max_move_percent.
 inline constexpr std::uint32_t kMinRedundancy = 4;
 
 // A move this many times the limit would be seen: such a pair is infeasible.

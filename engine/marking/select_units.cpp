@@ -48,14 +48,16 @@ UnitSet without_dearest(const UnitSet& units, const std::vector<float>& costs, d
 
 Capacity find_capacity(const Surface& surface, const Scheme& scheme, std::span<const Word> words,
                        const MarkOptions& options) {
-  if (!(options.drop_dearest >= 0 && options.drop_dearest < 1)) {
-    throw Error(ErrorCode::Usage, {}, "", "the share of candidates left out lies in 0 up to 1");
+  const double dropped = options.drop_dearest_percent / 100;
+  if (!(dropped >= 0 && dropped < 1)) {
+    throw Error(ErrorCode::Usage, {}, "",
+                "the share of candidates left out is 0 to below 100 percent");
   }
   Capacity capacity;
   capacity.units = scheme.find_units(surface);
-  if (options.drop_dearest > 0 && capacity.units.size() > 0) {
+  if (dropped > 0 && capacity.units.size() > 0) {
     const std::vector<float> costs = cheapest_costs(surface, scheme, capacity.units, words);
-    capacity.units = without_dearest(capacity.units, costs, options.drop_dearest);
+    capacity.units = without_dearest(capacity.units, costs, dropped);
   }
   const Conflicts conflicts(capacity.units.moved, capacity.units.read_or_moved(),
                             surface.mesh.positions.size(), options.conflict_rule);

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/marking/marking.h"
+#include "engine/marking/options.h"
 
 namespace triglyph {
 
@@ -20,7 +20,7 @@ struct Capacity {
 };
 
 // `words`: those that are to be hidden, or some like them; used only to leave out dear candidates.
-// Throws Error Usage if MarkOptions::drop_dearest lies outside 0 .. 1.
+// Throws Error Usage if MarkOptions::drop_dearest_percent lies outside 0 up to 100.
 [[nodiscard]] Capacity find_capacity(const Surface& surface, const Scheme& scheme,
                                      std::span<const Word> words, const MarkOptions& options);
 

@@ -48,7 +48,7 @@ std::string read_private_file(const std::filesystem::path& path) {
   const Descriptor file{open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC)};
   if (file.fd < 0) {
     throw Error(ErrorCode::Unreadable, path, "",
-                errno == ELOOP ? "key file is a symbolic link" : std::strerror(errno));
+                errno == ELOOP ? std::string("key file is a symbolic link") : system_reason(errno));
   }
   struct stat status {};
   if (fstat(file.fd, &status) != 0 || !S_ISREG(status.st_mode)) {
@@ -60,7 +60,7 @@ std::string read_private_file(const std::filesystem::path& path) {
   }
   std::string text(256, '\0');
   const ssize_t count = read(file.fd, text.data(), text.size());
-  if (count < 0) throw Error(ErrorCode::Unreadable, path, "", std::strerror(errno));
+  if (count < 0) throw Error(ErrorCode::Unreadable, path, "", system_reason(errno));
   text.resize(static_cast<std::size_t>(count));
   return text;
 }
@@ -107,12 +107,12 @@ Key Key::load(const std::filesystem::path& path) {
 
 void Key::save(const std::filesystem::path& path) const {
   const Descriptor file{open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600)};
-  if (file.fd < 0) throw Error(ErrorCode::Unwritable, path, "", std::strerror(errno));
+  if (file.fd < 0) throw Error(ErrorCode::Unwritable, path, "", system_reason(errno));
   const std::string text = std::string(kHeading) + "\nsecret " + to_hex(secret_) + "\ncheck " +
                            check_digits(secret_) + "\n";
   if (write(file.fd, text.data(), text.size()) != static_cast<ssize_t>(text.size()) ||
       fsync(file.fd) != 0) {
-    const std::string reason = std::strerror(errno);
+    const std::string reason = system_reason(errno);
     unlink(path.c_str());
     throw Error(ErrorCode::Unwritable, path, "", reason);
   }

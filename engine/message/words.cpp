@@ -62,6 +62,27 @@ void validate(const WordFormat& format) {
   }
 }
 
+std::uint32_t parts_for(const WordFormat& format, std::size_t message_bytes) {
+  const std::size_t bits = kLengthBits + 8 * message_bytes + kTagBits;
+  const auto part_bits = static_cast<std::size_t>(format.part_bits);
+  return static_cast<std::uint32_t>((bits + part_bits - 1) / part_bits);
+}
+
+void check_message(const WordFormat& format, std::size_t message_bytes) {
+  if (message_bytes < kMinMessageBytes || message_bytes > kMaxMessageBytes) {
+    throw Error(ErrorCode::Usage, {}, "",
+                "a message has 1 to 256 bytes, not " + std::to_string(message_bytes));
+  }
+  const std::uint32_t parts = parts_for(format, message_bytes);
+  const std::uint32_t most = 1U << format.subscript_bits;
+  if (parts > most) {
+    throw Error(ErrorCode::Usage, {}, "",
+                "the message needs " + std::to_string(parts) + " parts, but " +
+                    std::to_string(format.subscript_bits) + " subscript bits number only " +
+                    std::to_string(most));
+  }
+}
+
 WordCode::WordCode(const Key& key, const WordFormat& format) : key_(key), format_(format) {
   validate(format);
   marker_ = stream_words(key, KeyUse::Marker, 1)[0] & low_bits(format.marker_bits);
@@ -74,28 +95,13 @@ WordCode::WordCode(const Key& key, const WordFormat& format) : key_(key), format
   keystream_ = stream_words(key, KeyUse::Keystream, capacity());
 }
 
-std::uint32_t WordCode::parts_for(std::size_t message_bytes) const {
-  const std::size_t bits = kLengthBits + 8 * message_bytes + kTagBits;
-  const auto part_bits = static_cast<std::size_t>(format_.part_bits);
-  return static_cast<std::uint32_t>((bits + part_bits - 1) / part_bits);
-}
-
 std::uint32_t WordCode::whiten(std::uint32_t part, std::uint32_t index) const {
   return (part ^ keystream_[index]) & low_bits(format_.part_bits);
 }
 
 std::vector<Word> WordCode::words_of(std::span<const std::uint8_t> message) const {
-  if (message.size() < kMinMessageBytes || message.size() > kMaxMessageBytes) {
-    throw Error(ErrorCode::Usage, {}, "",
-                "a message has 1 to 256 bytes, not " + std::to_string(message.size()));
-  }
-  const std::uint32_t parts = parts_for(message.size());
-  if (parts > capacity()) {
-    throw Error(ErrorCode::Usage, {}, "",
-                "the message needs " + std::to_string(parts) + " parts, but " +
-                    std::to_string(format_.subscript_bits) + " subscript bits number only " +
-                    std::to_string(capacity()));
-  }
+  check_message(format_, message.size());
+  const std::uint32_t parts = parts_for(format_, message.size());
   const std::vector<std::uint8_t> payload = payload_bytes(message, key_.tag(message));
   const auto part_bits = static_cast<std::size_t>(format_.part_bits);
   std::vector<Word> words(parts);
@@ -140,7 +146,7 @@ std::optional<std::uint32_t> WordCode::parts_wanted(
     std::span<const std::optional<std::uint32_t>> parts) const {
   const auto length = byte_of(parts, 0);
   if (!length) return std::nullopt;
-  return parts_for(*length + std::size_t{1});
+  return parts_for(format_, *length + std::size_t{1});
 }
 
 std::optional<Message> WordCode::message_of(

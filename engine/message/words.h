@@ -31,6 +31,13 @@ struct WordFormat {
 // Throws Error Usage if a count is out of its range: 0 <= m <= 16, 1 <= s <= 16 and 2 <= w <= 32.
 void validate(const WordFormat& format);
 
+// Returns the number of parts that a message of so many bytes is cut into:
+// ceil((8 + 8 * bytes + 32) / w).
+[[nodiscard]] std::uint32_t parts_for(const WordFormat& format, std::size_t message_bytes);
+
+// Throws Error Usage if a message has not 1 to 256 bytes, or needs more parts than 2^s.
+void check_message(const WordFormat& format, std::size_t message_bytes);
+
 // One watermark word as its bits stand in the mesh; the marker is the same for all.
 struct Word {
   std::uint32_t subscript = 0;
@@ -51,11 +58,7 @@ class WordCode {
   // Keyed number in [0, 1) that shifts the cells of the `index`-th invariant of a unit.
   [[nodiscard]] double offset(std::size_t index) const { return offsets_.at(index); }
 
-  // Parts a message of this many bytes needs: ceil((8 + 8 * bytes + 32) / w).
-  [[nodiscard]] std::uint32_t parts_for(std::size_t message_bytes) const;
-
-  // The p words of a message. Throws Error Usage if the message is not 1 to 256 bytes or needs more
-  // parts than 2^s.
+  // Returns the p words of a message. Throws Error Usage as check_message() does.
   [[nodiscard]] std::vector<Word> words_of(std::span<const std::uint8_t> message) const;
 
   // `parts` words of a random payload that the key determines: the paper's experiment, a message

@@ -14,6 +14,7 @@
 
 #include "engine/geometry/spatial_index.h"
 #include "engine/scheme/scheme.h"
+#include "engine/scheme/scheme_options.h"
 
 namespace triglyph {
 

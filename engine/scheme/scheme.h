@@ -4,10 +4,7 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <span>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "engine/assignment/cost_matrix.h"
@@ -29,46 +26,6 @@ struct UnitSet {
   [[nodiscard]] const PointLists& read_or_moved() const {
     return read.size() == moved.size() ? read : moved;
   }
-};
-
-// Which local change of the shape the assignment minimises, in model units.
-enum class CostFunction {
-  Displacement,  // the farthest move of a unit's points
-  Rms,           // root mean square of the moves of a unit's points
-  Hausdorff,  // between the surface about a unit before and after: sliding along it is nearly free
-  Normal,     // change of a face's normal times the root of its area: what shading shows
-};
-
-// "displacement", "rms", "hausdorff", "normal"; the inverse throws Error Usage. See local_cost.h.
-[[nodiscard]] std::span<const std::string_view> cost_names();
-[[nodiscard]] std::string_view name_of(CostFunction cost);
-[[nodiscard]] CostFunction cost_function(const std::string& name);
-
-// Which neighbours of a basis carry a group's bits.
-enum class AieGroups {
-  One,  // one a group: more units
-  All,  // all that can be told apart: a group survives damage to some of its points
-};
-
-// "one", "all"; the inverse throws Error Usage.
-[[nodiscard]] std::string_view name_of(AieGroups groups);
-[[nodiscard]] AieGroups aie_groups(const std::string& name);
-
-struct SchemeOptions {
-  double step = 0.02;  // width of a quantiser cell, dimensionless
-  CostFunction cost = CostFunction::Displacement;
-  AieGroups groups = AieGroups::One;
-  // Parts whose second best value extraction tries if the best ones make no message; each doubles
-  // the chance of a false alarm.
-  int doubtful_parts = 0;
-  // iie: radius of the balls in mean edge lengths of the mesh; or, if > 0, in model units.
-  double radius_edges = 3.5;
-  double radius = 0;
-  // iie: a ball's centre is the mean of the points within so many rings of its anchor.
-  int centre_rings = 1;
-  // iie: anchors are points whose connectivity beats that of all points within so many rings; 0:
-  // any point.
-  int site_rings = 0;
 };
 
 // One unit and the word it is to carry.
@@ -109,31 +66,5 @@ class Scheme {
   [[nodiscard]] virtual PointLists points_of(const Surface& surface,
                                              std::span<const std::uint32_t> anchors) const = 0;
 };
-
-// What a scheme uses where the user says nothing: for a message, and for the paper's experiment, in
-// which every unit carries a part of its own and cells need only survive rounding.
-struct SchemeDefaults {
-  WordFormat format;
-  SchemeOptions options;
-  WordFormat fill_format;  // its subscript bits are the most that are used
-  SchemeOptions fill_options;
-  // Units are scarce: it pays to search long for more of them, and all are wanted, even those that
-  // move farther.
-  bool has_few_units = false;
-};
-
-[[nodiscard]] std::span<const std::string_view> scheme_names();
-
-// The options with sizes that are relative to the mesh made absolute: they then mean the same for
-// the marked mesh to the last bit.
-[[nodiscard]] SchemeOptions fixed_for(const Mesh& mesh, SchemeOptions options);
-
-// Throws Error Usage for an unknown name.
-[[nodiscard]] SchemeDefaults scheme_defaults(const std::string& name);
-
-// "tsq": similarity invariant; "aie": affine invariant; "iie": noise robust. Throws Error Usage for
-// an unknown name or options out of range.
-[[nodiscard]] std::unique_ptr<Scheme> make_scheme(const std::string& name, const WordCode& code,
-                                                  const SchemeOptions& options);
 
 }  // namespace triglyph

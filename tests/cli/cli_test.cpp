@@ -1,5 +1,6 @@
 // The real executable, as a user runs it: exit codes, stdout as data, stderr as messages, files.
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <string>
 
@@ -84,10 +85,10 @@ TEST_F(Cli, MarksExtractsAndVerifies) {
   EXPECT_EQ(nlohmann::json::parse(as_json.out)["message_hex"], "666f7220416461");
 
   const Result trial = run("extract o/a.obj");
-  EXPECT_EQ(trial.code, 3);
+  EXPECT_EQ(trial.code, 4);  // read, but without a mark
   EXPECT_NE(trial.out.find("no mark"), std::string::npos);
   EXPECT_NE(trial.err.find("trial key"), std::string::npos);
-  EXPECT_EQ(run("extract a.obj --key-file k.key").code, 3);
+  EXPECT_EQ(run("extract a.obj --key-file k.key").code, 4);
 
   EXPECT_EQ(run("verify r.jsonl --key-file k.key").code, 0);
   const Result vague = run("verify r.jsonl --key-file k.key --detail");
@@ -99,6 +100,98 @@ TEST_F(Cli, MarksExtractsAndVerifies) {
   const Result missing = run("verify r.jsonl --key-file k.key --json");
   EXPECT_EQ(missing.code, 3);
   EXPECT_EQ(nlohmann::json::parse(missing.out)["verdict"], "missing");
+}
+
+// A reader asks for nothing that it can find out: scheme, key, and where the files are.
+TEST_F(Cli, ExtractTriesEverySchemeAndKeyOverFoldersGlobsManifestsAndLists) {
+  make_sample("in/a.obj", 4000);
+  make_sample("in/b.obj", 4000);
+  ASSERT_EQ(run("keygen --out k.key").code, 0);
+  ASSERT_EQ(run("keygen --out l.key").code, 0);
+  ASSERT_EQ(run("mark in/a.obj --out o --scheme tsq --message a --key-file k.key").code, 0);
+  ASSERT_EQ(run("mark in/b.obj --out o --scheme aie --message b --key-file l.key").code, 0);
+  folder_.write("m.jsonl", "{\"mesh\": \"o/*.obj\"}\n");
+  folder_.write("o/note.txt", "not a mesh");
+  const std::string keys = " --key-file k.key --key-file l.key --json";
+  const Result named = run("extract o/a.obj o/b.obj" + keys);
+  EXPECT_EQ(named.code, 0) << named.err;
+  std::istringstream lines(named.out);
+  std::string line;
+  std::getline(lines, line);
+  const auto first = nlohmann::json::parse(line);
+  std::getline(lines, line);
+  const auto second = nlohmann::json::parse(line);
+  EXPECT_EQ(first["scheme"], "tsq");
+  EXPECT_EQ(second["scheme"], "aie");
+  EXPECT_EQ(second["message_hex"], "62");
+  EXPECT_NE(first["key"], second["key"]);
+  // the bound pays for every attempt: tsq with two keys, then aie with two
+  EXPECT_EQ(first["false_alarm_bound"], std::ldexp(1.0, -32));
+  EXPECT_EQ(second["false_alarm_bound"], std::ldexp(1.0, -30));
+  for (const char* inputs : {"o", "'o/*.obj'", "m.jsonl", "o o/a.obj"}) {
+    EXPECT_EQ(run("extract " + std::string(inputs) + keys).out, named.out) << inputs;
+  }
+  for (const char* list : {"o/a.obj\\no/b.obj\\n", "o/a.obj\\0o/b.obj\\0"}) {
+    folder_.write("list.sh", "printf '" + std::string(list) +
+                                 "' | '" TRIGLYPH_EXECUTABLE "' extract - " + keys);
+    const std::string command = "cd '" + folder_.path().string() + "' && sh list.sh > .list";
+    EXPECT_EQ(std::system(command.c_str()), 0);
+    EXPECT_EQ(test::read_all(folder_ / ".list"), named.out) << list;
+  }
+  EXPECT_EQ(run("extract o --key-file k.key").code, 4);
+  folder_.write("o/bad.obj", "v 1 2\nf 1 2 3\n");
+  const Result bad = run("extract o" + keys);
+  EXPECT_EQ(bad.code, 3);
+  EXPECT_NE(bad.out.find("malformed"), std::string::npos);
+  EXPECT_EQ(run("extract 'o/*.stl'" + keys).code, 2);
+}
+
+TEST_F(Cli, ExtractFindsMarksOfAnotherStepByTheRecordsThatNameIt) {
+  make_sample("a.obj", 6000);
+  const std::string made = "mark a.obj --out o --step 0.03 --part-bits 12 --records r.jsonl";
+  ASSERT_EQ(run(made).code, 0);
+  EXPECT_EQ(run("extract o/a.obj").code, 4);
+  EXPECT_EQ(run("extract o/a.obj --like r.jsonl").code, 0);
+  EXPECT_EQ(run("extract o/a.obj --step 0.03 --part-bits 12").code, 0);
+  folder_.write("bad.jsonl", "{\"schema\": 2}\n");
+  const Result bad = run("extract o/a.obj --like bad.jsonl");
+  EXPECT_EQ(bad.code, 2);
+  EXPECT_NE(bad.err.find("bad.jsonl: line 1: "), std::string::npos) << bad.err;
+}
+
+// Percent is percent on the command line, in a config file, in a manifest and in a record.
+TEST_F(Cli, AnOptionMeansTheSameEverywhere) {
+  make_sample("a.obj", 3000);
+  folder_.write("m.jsonl", "{\"mesh\": \"a.obj\", \"max_move\": 5}\n");
+  folder_.write("c.toml", "[mark]\nmax-move = 5\n");
+  folder_.write("d.toml", "[mark]\nmax_move = 5\n");
+  for (const char* arguments :
+       {"mark a.obj --out o --max-move 5 --json", "mark m.jsonl --out o --json",
+        "--config c.toml mark a.obj --out o --json", "--config d.toml mark a.obj --out o --json"}) {
+    const Result result = run(arguments);
+    ASSERT_EQ(result.code, 0) << arguments << result.err;
+    EXPECT_EQ(nlohmann::json::parse(result.out)["options"]["max_move"], 5) << arguments;
+  }
+  for (const char* wrong : {"--max-move 500", "--max-move x", "--redundancy -1", "--redundancy 2.5",
+                            "--radius-edges 4", "--detail=perhaps"}) {
+    EXPECT_EQ(run("mark a.obj --out o " + std::string(wrong)).code, 2) << wrong;
+  }
+}
+
+TEST_F(Cli, MistakesInAConfigFileNameLineAndKey) {
+  make_sample("a.obj", 3000);
+  const auto refuses = [&](const std::string& text, const std::string& reason) {
+    folder_.write("c.toml", text);
+    const Result result = run("--config c.toml mark a.obj --out o");
+    EXPECT_EQ(result.code, 2) << text;
+    EXPECT_NE(result.err.find("c.toml: line 2: "), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find(reason), std::string::npos) << result.err;
+  };
+  refuses("[mark]\nmax-moove = 5\n", "unknown key \"max-moove\"");
+  refuses("[mark]\nmax-move = 500\n", "max_move");
+  refuses("mark.step = 0.1\nmark.step = 0.2\n", "comes twice");
+  refuses("[mark]\nredundancy = 2.5\n", "redundancy");
+  EXPECT_FALSE(fs::exists(folder_ / "o"));
 }
 
 TEST_F(Cli, GoesOnAfterABadMeshAndSaysSo) {

@@ -182,20 +182,6 @@ TEST(LocalSearch, StopsWhenItsTimeIsUp) {
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
 }
 
-TEST(LocalSearch, PrefersUnitsThatAreWorthMore) {
-  const SurfaceUnits subject;
-  std::vector<float> weights(subject.units.size());
-  for (std::size_t i = 0; i < weights.size(); ++i) weights[i] = i % 4 == 0 ? 1.0F : 0.6F;
-  const auto heavy_share = [&](const LayoutOptions& options) {
-    const auto chosen = local_search_layout(subject.conflicts, options);
-    const auto heavy =
-        std::count_if(chosen.begin(), chosen.end(), [&](auto unit) { return unit % 4 == 0; });
-    return static_cast<double>(heavy) / static_cast<double>(chosen.size());
-  };
-  EXPECT_LT(heavy_share({}), 0.3);
-  EXPECT_GT(heavy_share({.weights = weights}), 0.45);
-}
-
 TEST(AntColony, LearnsFromItsAnts) {
   const SurfaceUnits subject;
   EXPECT_GT(ant_colony_layout(subject.conflicts, {.iterations = 400}).size(),

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/base/error.h"
+#include "engine/scheme/registry.h"
 #include "tests/support/temp_folder.h"
 
 namespace triglyph {
@@ -17,7 +18,7 @@ std::vector<Job> jobs_of(JobSource& source) {
 }
 
 std::vector<Job> jobs_of(const fs::path& manifest, const fs::path& out = "") {
-  ManifestReader reader(manifest, {}, out);
+  ManifestReader reader(manifest, {{"message", std::string("any")}}, out);
   return jobs_of(reader);
 }
 
@@ -46,18 +47,17 @@ TEST(Manifest, LinesOverrideDefaultsOverrideOptions) {
   ASSERT_EQ(jobs.size(), 3U);
   EXPECT_EQ(jobs[0].mesh, folder / "a/b.obj");
   EXPECT_EQ(jobs[0].out, folder / "o/a/b.obj");
-  EXPECT_EQ(jobs[0].settings.message, (Message{'a', 'l', 'l'}));
-  EXPECT_EQ(jobs[0].settings.redundancy, 7U);
+  EXPECT_EQ(jobs[0].request.message, (Message{'a', 'l', 'l'}));
+  EXPECT_EQ(jobs[0].request.options.redundancy, 7U);
   EXPECT_EQ(jobs[1].out, folder / "x.ply");
-  EXPECT_EQ(jobs[1].settings.message, (Message{0, 255}));
-  EXPECT_EQ(jobs[1].settings.resolved().scheme_options.step, 0.05);
-  EXPECT_EQ(jobs[1].settings.layout, LayoutMethod::FirstFit);
-  EXPECT_EQ(jobs[1].settings.assign, AssignMethod::Sum);
-  EXPECT_EQ(jobs[1].settings.cost, CostFunction::Rms);
-  EXPECT_EQ(jobs[1].settings.resolved().format, (WordFormat{4, 9, 16}));
-  EXPECT_TRUE(jobs[2].settings.fill);
-  EXPECT_EQ(jobs[2].settings.resolved().scheme_options.step,
-            scheme_defaults("tsq").fill_options.step);
+  EXPECT_EQ(jobs[1].request.message, (Message{0, 255}));
+  EXPECT_EQ(jobs[1].request.options.scheme_options.at("step"), OptionValue(0.05));
+  EXPECT_EQ(jobs[1].request.options.layout.method, LayoutMethod::FirstFit);
+  EXPECT_EQ(jobs[1].request.options.assign, AssignMethod::Sum);
+  EXPECT_EQ(jobs[1].request.options.cost, CostFunction::Rms);
+  EXPECT_EQ(jobs[1].request.options.format, (WordFormat{4, 9, 16}));
+  EXPECT_TRUE(jobs[2].request.fill);
+  EXPECT_EQ(jobs[2].request.options.scheme_options, scheme_info("tsq").defaults(true).options);
   EXPECT_EQ(jobs[2].index, 2U);
 }
 
@@ -101,6 +101,45 @@ TEST(Manifest, ErrorsNameTheLine) {
   EXPECT_NE(error_of(folder / "absent.jsonl").find("cannot be read"), std::string::npos);
 }
 
+// Every value is checked when its line is read, whatever it is for.
+TEST(Manifest, RefusesValuesThatCannotBe) {
+  const test::TempFolder folder;
+  const auto message = [&](const std::string& keys) {
+    return error_of(folder.write("m.jsonl", "\n{\"mesh\": \"a.obj\", " + keys + "}"), folder / "o");
+  };
+  const auto refuses = [&](const std::string& keys, const std::string& reason) {
+    const std::string text = message(keys);
+    EXPECT_NE(text.find("m.jsonl: line 2: "), std::string::npos) << keys << ": " << text;
+    EXPECT_NE(text.find(reason), std::string::npos) << keys << ": " << text;
+  };
+  EXPECT_EQ(message("\"max_move\": 5"), "");
+  refuses("\"max_move\": 500", "\"max_move\"");
+  refuses("\"max_move\": -1", "\"max_move\"");
+  refuses("\"max_move\": \"5\"", "\"max_move\"");
+  refuses("\"redundancy\": -1", "\"redundancy\"");
+  refuses("\"redundancy\": 2.5", "\"redundancy\"");
+  refuses("\"redundancy\": 18446744073709551615", "\"redundancy\"");
+  refuses("\"redundancy\": null", "\"redundancy\"");
+  refuses("\"redundancy\": 3, \"redundancy\": 4", "comes twice");
+  refuses("\"layout\": \"best\"", "first-fit, min-degree");
+  refuses("\"scheme\": \"xyz\"", "tsq, aie, iie");
+  refuses("\"message\": \"a\", \"fill\": true", "exclude each other");
+  refuses("\"message\": \"a\", \"message_hex\": \"00\"", "exclude each other");
+  refuses("\"message\": \"\"", "1 to 256 bytes");
+  refuses("\"radius_edges\": 4", "no option of scheme tsq");
+  refuses("\"scheme\": \"iie\", \"step\": 0.5", "\"step\"");
+  refuses("\"subscript_bits\": 2", "subscript bits");
+  refuses("\"detail\": 1", "\"detail\" is true or false");
+  EXPECT_EQ(message("\"message\": \"a\", \"fill\": false"), "");
+}
+
+TEST(Manifest, RefusesDeepNestingWithoutFollowingIt) {
+  const test::TempFolder folder;
+  const std::string deep(1000000, '[');
+  const std::string text = error_of(folder.write("m.jsonl", "{\"mesh\": " + deep), folder / "o");
+  EXPECT_NE(text.find("line 1: nested"), std::string::npos) << text.substr(0, 200);
+}
+
 TEST(CheckPlan, RefusesOutputsThatWouldDestroyAnything) {
   const test::TempFolder folder;
   folder.write("a.obj", "");
@@ -109,7 +148,8 @@ TEST(CheckPlan, RefusesOutputsThatWouldDestroyAnything) {
   fs::create_directory_symlink(folder.path(), folder / "same");
   const auto plan = [&](const std::string& text) -> std::string {
     try {
-      ManifestReader reader(folder.write("m.jsonl", text), {}, folder / "o");
+      ManifestReader reader(folder.write("m.jsonl", text), {{"message", std::string("any")}},
+                            folder / "o");
       check_plan(reader);
     } catch (const Error& error) {
       return error.what();
@@ -128,7 +168,7 @@ TEST(CheckPlan, RefusesOutputsThatWouldDestroyAnything) {
 }
 
 TEST(MeshList, PutsFilesIntoOneFolder) {
-  MeshList list({"x/a.obj", "b.stl"}, {}, "out");
+  MeshList list({"x/a.obj", "b.stl"}, {{"message", std::string("any")}}, "out");
   const auto jobs = jobs_of(list);
   ASSERT_EQ(jobs.size(), 2U);
   EXPECT_EQ(jobs[0].out, "out/a.obj");

@@ -8,7 +8,7 @@
 #include "engine/base/output_file.h"
 #include "engine/base/parallel.h"
 #include "engine/io/export_mesh.h"
-#include "manifests/pipeline.h"
+#include "engine/marking/read_file.h"
 #include "tests/support/attacks.h"
 #include "tests/support/shapes.h"
 #include "tests/support/temp_folder.h"
@@ -24,6 +24,12 @@ void save(const Mesh& mesh, const fs::path& path, FileFormat format) {
   OutputFile file(path);
   file.write(export_mesh(mesh, options));
   file.commit();
+}
+
+std::optional<Message> message_in(const fs::path& path) {
+  const std::vector<Key> keys = {Key::trial()};
+  const FileReading reading = read_file(path, encodings_of({}), keys);
+  return reading.mark ? std::optional(reading.mark->message) : std::nullopt;
 }
 
 // Good and bad meshes of all formats, and a manifest over them.
@@ -49,11 +55,12 @@ class Collection {
     manifest_ = folder_.write("m.jsonl", manifest);
   }
 
-  [[nodiscard]] std::vector<Record> run(const RunOptions& options, const fs::path& out) const {
+  [[nodiscard]] std::vector<Record> run(const FlowOptions& options, const fs::path& out,
+                                        int threads = 0) const {
     ManifestReader jobs(manifest_, {}, out);
     std::vector<Record> records;
     const std::atomic<bool> stop{false};
-    with_threads(options.threads, [&] {
+    with_threads(threads, [&] {
       run_jobs(
           jobs, Key::trial(), options, [&](const Record& record) { records.push_back(record); },
           stop);
@@ -73,20 +80,19 @@ TEST(RunJobs, GivesEveryMeshARecordInOrder) {
   const Collection collection;
   const auto records = collection.run({}, collection.folder() / "out");
   ASSERT_EQ(records.size(), 11U);
-  for (std::size_t i = 0; i < records.size(); ++i) EXPECT_EQ(records[i].job.index, i);
+  for (std::size_t i = 0; i < records.size(); ++i) EXPECT_EQ(records[i].index, i);
   for (const std::size_t i : {0, 1, 2, 3, 4, 5, 6, 10}) {
-    EXPECT_EQ(records[i].status, Status::Marked) << records[i].error;
-    EXPECT_GT(records[i].units_embedded, 0U);
-    EXPECT_GT(records[i].hausdorff, 0);
-    EXPECT_TRUE(fs::exists(records[i].job.out));
-    const FileExtraction found = extract_file(records[i].job.out, Key::trial(), {});
-    EXPECT_EQ(found.extraction.message, (Message{'r', 'u', 'n', ' ', 't', 'e', 's', 't'}));
+    EXPECT_EQ(records[i].file.status, FileStatus::Marked) << records[i].file.error;
+    EXPECT_GT(records[i].file.units_embedded, 0U);
+    EXPECT_GT(records[i].file.hausdorff, 0);
+    EXPECT_TRUE(fs::exists(records[i].file.out));
+    EXPECT_EQ(message_in(records[i].file.out), (Message{'r', 'u', 'n', ' ', 't', 'e', 's', 't'}));
   }
-  EXPECT_EQ(records[7].status, Status::Malformed);
-  EXPECT_NE(records[7].error.find("line 2"), std::string::npos);
-  EXPECT_EQ(records[8].status, Status::TooSmall);
-  EXPECT_EQ(records[9].status, Status::Unreadable);
-  for (const std::size_t i : {7, 8, 9}) EXPECT_FALSE(fs::exists(records[i].job.out));
+  EXPECT_EQ(records[7].file.status, FileStatus::Malformed);
+  EXPECT_NE(records[7].file.error.find("line 2"), std::string::npos);
+  EXPECT_EQ(records[8].file.status, FileStatus::TooSmall);
+  EXPECT_EQ(records[9].file.status, FileStatus::Unreadable);
+  for (const std::size_t i : {7, 8, 9}) EXPECT_FALSE(fs::exists(records[i].file.out));
   for (const auto& entry : fs::recursive_directory_iterator(collection.folder() / "out")) {
     EXPECT_EQ(entry.path().filename().string().find(".part"), std::string::npos);
   }
@@ -94,24 +100,23 @@ TEST(RunJobs, GivesEveryMeshARecordInOrder) {
 
 TEST(RunJobs, BytesAndRecordsAreTheSameForAnyThreadsAndMemory) {
   const Collection collection;
-  const auto snapshot = [&](const RunOptions& options) {
+  const auto snapshot = [&](const FlowOptions& options, int threads = 0) {
     const fs::path out = collection.folder() / "out";
     fs::remove_all(out);
     std::vector<std::string> all;
-    for (const Record& record : collection.run(options, out)) {
-      auto json = to_json(record, 0);
+    for (const Record& record : collection.run(options, out, threads)) {
+      auto json = to_json(record);
       json.erase("run");
       all.push_back(json.dump());
-      all.push_back(test::read_all(record.job.out));
+      all.push_back(test::read_all(record.file.out));
     }
     return all;
   };
   const auto expected = snapshot({});
   for (const int threads : {1, 2, 8}) {
-    RunOptions options;
-    options.threads = threads;
+    FlowOptions options;
     options.memory_bytes = threads == 8 ? 1 : std::uint64_t{1} << 30;
-    EXPECT_EQ(snapshot(options), expected) << threads << " threads";
+    EXPECT_EQ(snapshot(options, threads), expected) << threads << " threads";
   }
 }
 
@@ -120,13 +125,13 @@ TEST(RunJobs, StopsAtAnInterruptWithWholeFilesOnly) {
   ManifestReader jobs(collection.manifest(), {}, collection.folder() / "out");
   std::atomic<bool> stop{false};
   std::size_t count = 0;
-  RunOptions options;
+  FlowOptions options;
   options.memory_bytes = 1;  // one mesh at a time
   run_jobs(
       jobs, Key::trial(), options,
       [&](const Record& record) {
-        if (record.status == Status::Marked) {
-          (void)extract_file(record.job.out, Key::trial(), {});
+        if (record.file.status == FileStatus::Marked) {
+          (void)message_in(record.file.out);
         }
         stop = ++count >= 2;
       },
@@ -139,18 +144,21 @@ TEST(RunJobs, StopsAtAnInterruptWithWholeFilesOnly) {
   EXPECT_LT(files, 7U);
 }
 
+// A record holds all that wrote it: read and written again it is the same line.
 TEST(Records, ComeBackFromTheirLine) {
   const Collection collection;
-  const auto records = collection.run({}, collection.folder() / "out");
-  const RecordedMark mark = parse_record(to_json(records[0], 5).dump());
-  EXPECT_EQ(mark.out, records[0].job.out);
-  EXPECT_EQ(mark.status, Status::Marked);
-  EXPECT_EQ(mark.message, records[0].job.settings.message);
-  EXPECT_EQ(mark.options.format, records[0].format);
-  EXPECT_EQ(mark.units_embedded, records[0].units_embedded);
+  for (const Record& record : collection.run({}, collection.folder() / "out")) {
+    const std::string line = to_json(record).dump();
+    const Record back = parse_record(line);
+    EXPECT_EQ(to_json(back).dump(), line);
+    EXPECT_EQ(back.file.request, record.file.request);
+    EXPECT_EQ(back.file.encoding(), record.file.encoding());
+    EXPECT_EQ(back.file.status, record.file.status);
+  }
   EXPECT_THROW((void)parse_record("{}"), Error);
   EXPECT_THROW((void)parse_record("not json"), Error);
   EXPECT_THROW((void)parse_record("{\"schema\": 1}"), Error);
+  EXPECT_THROW((void)parse_record("{\"schema\": 3}"), Error);
 }
 
 // The whole way through every pair of formats that a marked mesh may be converted to.
@@ -161,14 +169,12 @@ TEST(Formats, MessageSurvivesConversionFromAnyToAny) {
                               FileFormat::StlAscii,  FileFormat::PlyBig,    FileFormat::Obj};
   const char* endings[] = {"ply", "stl", "off", "stl", "ply", "obj"};
   for (std::size_t i = 0; i < 7; ++i) {
-    fs::path path = records[i].job.out;
+    fs::path path = records[i].file.out;
     for (std::size_t k = 0; k < 6; ++k) {
       const Mesh mesh = MeshFile::open(path).mesh();
       path = collection.folder() / ("c" + std::to_string(k) + "." + endings[k]);
       save(test::with_significant_digits(mesh, 6), path, chain[k]);
-      EXPECT_EQ(extract_file(path, Key::trial(), {}).extraction.message,
-                records[i].job.settings.message)
-          << i << " -> " << path;
+      EXPECT_EQ(message_in(path), records[i].file.request.message) << i << " -> " << path;
     }
   }
 }

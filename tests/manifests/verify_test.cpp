@@ -1,5 +1,3 @@
-#include "manifests/verify.h"
-
 #include <fstream>
 
 #include <gtest/gtest.h>
@@ -26,17 +24,17 @@ void save(const Mesh& mesh, const fs::path& path) {
 }
 
 // One mesh, marked and recorded.
-class MarkedFile {
+class RecordedMesh {
  public:
-  explicit MarkedFile(const JobSettings& settings, const Mesh& mesh = test::bumpy_ball().mesh) {
+  explicit RecordedMesh(const OptionValues& settings, const Mesh& mesh = test::bumpy_ball().mesh) {
     save(mesh, folder_ / "in.obj");
     MeshList jobs({folder_ / "in.obj"}, settings, folder_ / "out");
     const std::atomic<bool> stop{false};
     run_jobs(
-        jobs, Key::trial(), {}, [&](const Record& record) { line_ = to_json(record, 0).dump(); },
+        jobs, Key::trial(), {}, [&](const Record& record) { line_ = to_json(record).dump(); },
         stop);
   }
-  [[nodiscard]] RecordedMark record() const { return parse_record(line_); }
+  [[nodiscard]] MarkedFile record() const { return parse_record(line_).file; }
   [[nodiscard]] const std::string& line() const { return line_; }
   [[nodiscard]] fs::path original() const { return folder_ / "in.obj"; }
 
@@ -66,15 +64,13 @@ class MarkedFile {
   std::string line_;
 };
 
-JobSettings message_settings() {
-  JobSettings settings;
-  settings.message = {'v', 'e', 'r', 'i', 'f', 'y'};
-  return settings;
+OptionValues message_settings() {
+  return {{"message", std::string("verify")}};
 }
 
 TEST(VerifyFile, TellsIntactAlteredLostAndMissingApart) {
-  const MarkedFile marked(message_settings());
-  const RecordedMark mark = marked.record();
+  const RecordedMesh marked(message_settings());
+  const MarkedFile mark = marked.record();
   EXPECT_EQ(verify_file(mark, Key::trial()).verdict, FileVerdict::Intact);
   EXPECT_EQ(verify_file(mark, Key::generate()).verdict, FileVerdict::Lost);
 
@@ -87,17 +83,17 @@ TEST(VerifyFile, TellsIntactAlteredLostAndMissingApart) {
   EXPECT_EQ(verify_file(mark, Key::trial()).verdict, FileVerdict::Lost);
   fs::remove(mark.out);
   EXPECT_EQ(verify_file(mark, Key::trial()).verdict, FileVerdict::Missing);
-  RecordedMark bad = mark;
-  bad.status = Status::TooSmall;
+  MarkedFile bad = mark;
+  bad.status = FileStatus::TooSmall;
   EXPECT_EQ(verify_file(bad, Key::trial()).verdict, FileVerdict::NotMarked);
 }
 
 TEST(VerifyFile, KnowsAFilledMesh) {
-  JobSettings settings;
-  settings.fill = true;
-  const MarkedFile marked(settings);
-  const RecordedMark mark = marked.record();
-  ASSERT_EQ(mark.status, Status::Marked);
+  OptionValues settings;
+  settings["fill"] = true;
+  const RecordedMesh marked(settings);
+  const MarkedFile mark = marked.record();
+  ASSERT_EQ(mark.status, FileStatus::Marked);
   const Verification found = verify_file(mark, Key::trial());
   EXPECT_EQ(found.verdict, FileVerdict::Intact);
   EXPECT_GE(found.units_found, mark.units_embedded);
@@ -106,13 +102,13 @@ TEST(VerifyFile, KnowsAFilledMesh) {
 class EverySchemesDamage : public testing::TestWithParam<std::string> {};
 
 TEST_P(EverySchemesDamage, IsLocated) {
-  JobSettings settings;
-  settings.scheme = GetParam();
-  settings.fill = true;
-  settings.detail = true;
-  const MarkedFile marked(settings);
-  const RecordedMark mark = marked.record();
-  ASSERT_EQ(mark.status, Status::Marked);
+  OptionValues settings;
+  settings["scheme"] = GetParam();
+  settings["fill"] = true;
+  settings["detail"] = true;
+  const RecordedMesh marked(settings);
+  const MarkedFile mark = marked.record();
+  ASSERT_EQ(mark.status, FileStatus::Marked);
   ASSERT_TRUE(mark.units);
   EXPECT_EQ(mark.units->size(), mark.units_embedded);
   const Verification before = verify_file(mark, Key::trial(), true);
@@ -143,12 +139,12 @@ TEST_P(EverySchemesDamage, IsLocated) {
 }
 
 TEST_P(EverySchemesDamage, IsNotGuessedInAMeshOfAnotherOrder) {
-  JobSettings settings;
-  settings.scheme = GetParam();
-  settings.fill = true;
-  settings.detail = true;
-  const MarkedFile marked(settings);
-  const RecordedMark mark = marked.record();
+  OptionValues settings;
+  settings["scheme"] = GetParam();
+  settings["fill"] = true;
+  settings["detail"] = true;
+  const RecordedMesh marked(settings);
+  const MarkedFile mark = marked.record();
   save(test::shuffled(MeshFile::open(mark.out).mesh(), 3), mark.out);
   const Verification found = verify_file(mark, Key::trial(), true);
   EXPECT_EQ(found.verdict, FileVerdict::Altered);
@@ -161,18 +157,19 @@ INSTANTIATE_TEST_SUITE_P(All, EverySchemesDamage, testing::Values("tsq", "aie", 
                          [](const auto& param) { return param.param; });
 
 TEST(Records, NameUnitsOnlyIfWanted) {
-  JobSettings settings = message_settings();
-  EXPECT_FALSE(MarkedFile(settings).record().units);
-  settings.detail = true;
-  const MarkedFile detailed(settings);
+  OptionValues settings = message_settings();
+  EXPECT_FALSE(RecordedMesh(settings).record().units);
+  settings["detail"] = true;
+  const RecordedMesh detailed(settings);
   ASSERT_TRUE(detailed.record().units);
   EXPECT_EQ(detailed.record().units->size(), detailed.record().units_embedded);
-  settings.detail = false;
-  settings.scheme = "iie";
-  settings.fill = true;
-  EXPECT_TRUE(MarkedFile(settings).record().units);
+  settings["detail"] = false;
+  settings["scheme"] = std::string("iie");
+  settings.erase("message");
+  settings["fill"] = true;
+  EXPECT_TRUE(RecordedMesh(settings).record().units);
 
-  auto json = nlohmann::json::parse(detailed.line());
+  auto json = nlohmann::ordered_json::parse(detailed.line());
   json["units"][0][1] = 1000;  // no such part
   EXPECT_THROW((void)parse_record(json.dump()), Error);
   json["units"] = {{5, 0}, {5, 1}};  // anchors must ascend

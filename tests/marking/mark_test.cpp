@@ -8,6 +8,7 @@
 #include "engine/base/error.h"
 #include "engine/marking/extract.h"
 #include "engine/marking/settle.h"
+#include "engine/scheme/registry.h"
 #include "tests/support/arenas.h"
 #include "tests/support/attacks.h"
 #include "tests/support/shapes.h"
@@ -35,9 +36,7 @@ Mesh marked_ball(const MarkOptions& options = {}) {
 
 Extraction read(const Mesh& mesh, const Key& key = Key::trial(), const MarkOptions& options = {}) {
   const test::Solid solid(mesh);
-  const WordCode code(key, options.format);
-  return extract(solid.surface(), *make_scheme(options.scheme, code, options.scheme_options), code,
-                 options.scheme_options.doubtful_parts);
+  return extract(solid.surface(), options.encoding(), key);
 }
 
 TEST(Mark, MessageComesBackAndEveryCarrierAgrees) {
@@ -177,7 +176,7 @@ TEST(Mark, OptimisedMovesLessThanUnoptimised) {
   plain.layout.method = LayoutMethod::FirstFit;
   plain.assign = AssignMethod::Sequential;
   MarkOptions max;  // both with all repeats, so that they solve the same problem
-  max.max_move_rel_diag = 0;
+  max.max_move_percent = 0;
   MarkOptions sum = max;
   sum.assign = AssignMethod::Sum;
   const Marking unoptimised = mark_ball(plain);
@@ -233,7 +232,7 @@ TEST(Mark, RefusesUnknownSchemesAndCellWidths) {
   options.scheme = "xyz";
   EXPECT_THROW((void)mark_ball(options), Error);
   options = {};
-  options.scheme_options.step = 0;
+  options.scheme_options["step"] = 0.0;
   EXPECT_THROW((void)mark_ball(options), Error);
 }
 

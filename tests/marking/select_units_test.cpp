@@ -7,6 +7,7 @@
 
 #include "engine/base/error.h"
 #include "engine/marking/mark.h"
+#include "engine/scheme/registry.h"
 #include "tests/support/shapes.h"
 
 namespace triglyph {
@@ -20,7 +21,7 @@ class FindCapacity : public testing::Test {
   std::vector<Word> words_ = code_.fill_words(kProbeWords);
 
   [[nodiscard]] Capacity capacity(double drop_dearest) {
-    options_.drop_dearest = drop_dearest;
+    options_.drop_dearest_percent = 100 * drop_dearest;
     return find_capacity(test::bumpy_ball().surface(), *scheme_, words_, options_);
   }
   // Of every candidate, by anchor.
@@ -67,7 +68,7 @@ TEST_F(FindCapacity, RefusesAShareThatCannotBe) {
 
 TEST_F(FindCapacity, KeepsTheSubscriptBitsItIsTold) {
   const auto format_of = [&](bool keeps) {
-    options_.drop_dearest = 0;
+    options_.drop_dearest_percent = 0;
     options_.keeps_subscript_bits = keeps;
     return mark(
                test::bumpy_ball().surface(), {}, Key::trial(), options_,

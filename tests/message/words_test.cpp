@@ -30,13 +30,13 @@ class WordFormats : public testing::TestWithParam<WordFormat> {};
 TEST_P(WordFormats, MessagesOfEveryLengthComeBack) {
   const WordCode code(Key::trial(), GetParam());
   for (std::size_t bytes = 1; bytes <= 256; ++bytes) {
-    if (code.parts_for(bytes) > code.capacity()) {
+    if (parts_for(code.format(), bytes) > code.capacity()) {
       EXPECT_THROW((void)code.words_of(random_message(bytes, 1)), Error);
       continue;
     }
     const Message message = random_message(bytes, 1);
     const std::vector<Word> words = code.words_of(message);
-    EXPECT_EQ(words.size(), code.parts_for(bytes));
+    EXPECT_EQ(words.size(), parts_for(code.format(), bytes));
     EXPECT_EQ(code.message_of(parts_of(code, words)), message);
   }
 }
@@ -62,7 +62,7 @@ TEST(WordCode, SubscriptsAreDistinctAndInvertible) {
 TEST(WordCode, OneWrongBitOrAMissingPartIsNoMessage) {
   const WordCode code(Key::trial(), {6, 8, 12});
   const auto parts = parts_of(code, code.words_of(random_message(8, 2)));
-  for (std::uint32_t part = 0; part < code.parts_for(8); ++part) {
+  for (std::uint32_t part = 0; part < parts_for(code.format(), 8); ++part) {
     auto damaged = parts;
     damaged[part].reset();
     EXPECT_FALSE(code.message_of(damaged));

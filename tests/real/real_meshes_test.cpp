@@ -10,8 +10,10 @@
 #include "engine/io/export_mesh.h"
 #include "engine/io/mesh_file.h"
 #include "engine/marking/extract.h"
+#include "engine/marking/mark_file.h"
+#include "engine/marking/read_file.h"
 #include "engine/metric/hausdorff.h"
-#include "manifests/pipeline.h"
+#include "engine/scheme/registry.h"
 #include "manifests/run.h"
 #include "tests/support/attacks.h"
 #include "tests/support/shapes.h"
@@ -24,14 +26,15 @@ namespace fs = std::filesystem;
 
 const fs::path kBunny = "/usr/share/glmark2/models/bunny.obj";
 
-Record mark_file(const fs::path& mesh, const fs::path& out, const JobSettings& settings) {
-  MeshList jobs({mesh}, settings, out);
-  std::vector<Record> records;
-  const std::atomic<bool> stop{false};
-  run_jobs(
-      jobs, Key::trial(), {}, [&](const Record& record) { records.push_back(record); }, stop);
-  EXPECT_EQ(records.size(), 1U);
-  return records.at(0);
+// Marks one mesh into a folder with the trial key.
+MarkedFile mark_into(const fs::path& mesh, const fs::path& folder, const OptionValues& values) {
+  return mark_file(mesh, folder / mesh.filename(), resolve(values), Key::trial());
+}
+
+std::optional<Message> message_in_file(const fs::path& path) {
+  const std::vector<Key> keys = {Key::trial()};
+  const FileReading reading = read_file(path, encodings_of({}), keys);
+  return reading.mark ? std::optional(reading.mark->message) : std::nullopt;
 }
 
 // The paper's experiment on one model: both steps must pay.
@@ -44,18 +47,13 @@ struct PaperFigures {
 void expect_optimisation_pays(const std::string& scheme, const fs::path& mesh,
                               const PaperFigures& figures) {
   const test::TempFolder folder;
-  JobSettings plain;
-  plain.fill = true;
-  plain.scheme = scheme;
-  plain.layout = LayoutMethod::FirstFit;
-  plain.assign = AssignMethod::Sequential;
-  JobSettings optimised;
-  optimised.fill = true;
-  optimised.scheme = scheme;
-  const Record before = mark_file(mesh, folder / "plain", plain);
-  const Record after = mark_file(mesh, folder / "optimised", optimised);
-  EXPECT_EQ(before.status, Status::Marked) << before.error;
-  EXPECT_EQ(after.status, Status::Marked) << after.error;
+  const OptionValues optimised = {{"fill", true}, {"scheme", scheme}};
+  const OptionValues plain = layered(
+      optimised, {{"layout", std::string("first-fit")}, {"assign", std::string("sequential")}});
+  const MarkedFile before = mark_into(mesh, folder / "plain", plain);
+  const MarkedFile after = mark_into(mesh, folder / "optimised", optimised);
+  EXPECT_EQ(before.status, FileStatus::Marked) << before.error;
+  EXPECT_EQ(after.status, FileStatus::Marked) << after.error;
   EXPECT_GE(after.units_valid, figures.least_units);
   EXPECT_GT(after.units_valid, before.units_valid);
   EXPECT_GE(after.units_embedded, after.units_valid * 95 / 100);
@@ -89,26 +87,25 @@ TEST(RealMeshes, PaperModelsFillAsInThePaper) {
 TEST(RealMeshes, MarkedBunnySurvivesWhatItShould) {
   if (!fs::exists(kBunny)) GTEST_SKIP() << "glmark2-data is not installed";
   const test::TempFolder folder;
-  JobSettings settings;
-  settings.message = {'b', 'u', 'n', 'n', 'y', '0', '0', '1'};
-  const Record record = mark_file(kBunny, folder.path(), settings);
-  ASSERT_EQ(record.status, Status::Marked) << record.error;
-  const Mesh marked = MeshFile::open(record.job.out).mesh();
+  const MarkRequest request = resolve({{"message", std::string("bunny001")}});
+  const MarkedFile record = mark_file(kBunny, folder / "bunny.obj", request, Key::trial());
+  ASSERT_EQ(record.status, FileStatus::Marked) << record.error;
+  const Mesh marked = MeshFile::open(record.out).mesh();
   const WordCode code(Key::trial(), {});
   const auto scheme = make_scheme("tsq", code, {});
   const auto message_in = [&](const Mesh& mesh) {
     const test::Solid solid(mesh);
     return extract(solid.surface(), *scheme, code).message;
   };
-  EXPECT_EQ(message_in(marked), settings.message);
-  EXPECT_EQ(message_in(test::with_significant_digits(marked, 6)), settings.message);
+  EXPECT_EQ(message_in(marked), request.message);
+  EXPECT_EQ(message_in(test::with_significant_digits(marked, 6)), request.message);
   EXPECT_FALSE(message_in(MeshFile::open(kBunny).mesh()));
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-    EXPECT_EQ(message_in(test::shuffled(marked, seed)), settings.message);
-    EXPECT_EQ(message_in(test::moved_rigidly_and_scaled(marked, seed)), settings.message);
-    EXPECT_EQ(message_in(test::cropped_half(marked, seed)), settings.message);
+    EXPECT_EQ(message_in(test::shuffled(marked, seed)), request.message);
+    EXPECT_EQ(message_in(test::moved_rigidly_and_scaled(marked, seed)), request.message);
+    EXPECT_EQ(message_in(test::cropped_half(marked, seed)), request.message);
   }
-  fs::path path = record.job.out;
+  fs::path path = record.out;
   const FileFormat chain[] = {FileFormat::PlyLittle, FileFormat::StlBinary, FileFormat::Off};
   const char* endings[] = {"ply", "stl", "off"};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -119,41 +116,37 @@ TEST(RealMeshes, MarkedBunnySurvivesWhatItShould) {
     OutputFile file(path);
     file.write(export_mesh(mesh, format));
     file.commit();
-    EXPECT_EQ(extract_file(path, Key::trial(), {}).extraction.message, settings.message) << path;
+    EXPECT_EQ(message_in_file(path), request.message) << path;
   }
 }
 
 // The message comes back after affine maps stored as float32, shuffling and cropping.
-void expect_affine_survival(const fs::path& mesh, AieGroups groups) {
+void expect_affine_survival(const fs::path& mesh, const std::string& groups) {
   const test::TempFolder folder;
-  JobSettings settings;
-  settings.message = {'a', 'f', 'f', 'i', 'n', 'e', ' ', '8'};
-  settings.scheme = "aie";
-  settings.groups = groups;
-  const Record record = mark_file(mesh, folder.path(), settings);
-  ASSERT_EQ(record.status, Status::Marked) << record.error;
-  const Mesh marked = MeshFile::open(record.job.out).mesh();
-  const MarkOptions options = settings.resolved();
+  const OptionValues values = {
+      {"message", std::string("affine 8")}, {"scheme", std::string("aie")}, {"aie_groups", groups}};
+  const MarkRequest request = resolve(values);
+  const MarkedFile record = mark_file(mesh, folder / mesh.filename(), request, Key::trial());
+  ASSERT_EQ(record.status, FileStatus::Marked) << record.error;
+  const Mesh marked = MeshFile::open(record.out).mesh();
   const auto message_in = [&](Mesh attacked, const Key& key = Key::trial()) {
     for (Vec3& p : attacked.positions) p = test::as_float(p);
     const test::Solid solid(attacked);
-    const WordCode code(key, options.format);
-    return extract(solid.surface(), *make_scheme("aie", code, options.scheme_options), code)
-        .message;
+    return extract(solid.surface(), request.options.encoding(), key).message;
   };
   EXPECT_FALSE(message_in(MeshFile::open(mesh).mesh()));
   EXPECT_FALSE(message_in(marked, Key::generate()));
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const Mesh mapped = test::affinely_mapped(marked, 4, seed % 2 == 0, seed);
-    EXPECT_EQ(message_in(mapped), settings.message) << mesh << seed;
-    EXPECT_EQ(message_in(test::cropped_half(test::shuffled(mapped, seed), seed)), settings.message)
+    EXPECT_EQ(message_in(mapped), request.message) << mesh << seed;
+    EXPECT_EQ(message_in(test::cropped_half(test::shuffled(mapped, seed), seed)), request.message)
         << mesh << seed;
   }
 }
 
 TEST(RealMeshes, AffineMarksSurviveOnTheBunny) {
   if (!fs::exists(kBunny)) GTEST_SKIP() << "glmark2-data is not installed";
-  for (const AieGroups groups : {AieGroups::One, AieGroups::All}) {
+  for (const char* groups : {"one", "all"}) {
     expect_affine_survival(kBunny, groups);
   }
 }
@@ -162,7 +155,7 @@ TEST(RealMeshes, AffineMarksSurviveOnThePapersModels) {
   const char* models = std::getenv("TRIGLYPH_MODELS");
   if (models == nullptr) GTEST_SKIP() << "TRIGLYPH_MODELS names no folder of models";
   for (const char* name : {"bunny.obj", "armadillo.obj", "max-planck.obj"}) {
-    expect_affine_survival(fs::path(models) / name, AieGroups::One);
+    expect_affine_survival(fs::path(models) / name, "one");
   }
 }
 
@@ -170,29 +163,25 @@ TEST(RealMeshes, AffineMarksSurviveOnThePapersModels) {
 // bits, of a mesh that was also reordered, moved and scaled.
 void expect_noise_survival(const fs::path& mesh, double intensity, int bits) {
   const test::TempFolder folder;
-  JobSettings settings;
-  settings.message = {'i', 'n', 't', 'e', 'g', 'r', 'a', 'l'};
-  settings.scheme = "iie";
-  const Record record = mark_file(mesh, folder.path(), settings);
-  ASSERT_EQ(record.status, Status::Marked) << record.error;
-  const Mesh marked = MeshFile::open(record.job.out).mesh();
-  const MarkOptions options = settings.resolved();
+  const MarkRequest request =
+      resolve({{"message", std::string("integral")}, {"scheme", std::string("iie")}});
+  const MarkedFile record = mark_file(mesh, folder / mesh.filename(), request, Key::trial());
+  ASSERT_EQ(record.status, FileStatus::Marked) << record.error;
+  const Mesh marked = MeshFile::open(record.out).mesh();
   const auto message_in = [&](Mesh attacked, const Key& key = Key::trial()) {
     for (Vec3& p : attacked.positions) p = test::as_float(p);
     const test::Solid solid(attacked);
-    const WordCode code(key, options.format);
-    const auto scheme = make_scheme("iie", code, options.scheme_options);
-    return extract(solid.surface(), *scheme, code, options.scheme_options.doubtful_parts).message;
+    return extract(solid.surface(), request.options.encoding(), key).message;
   };
-  EXPECT_EQ(message_in(marked), settings.message);
+  EXPECT_EQ(message_in(marked), request.message);
   EXPECT_FALSE(message_in(MeshFile::open(mesh).mesh()));
   EXPECT_FALSE(message_in(marked, Key::generate()));
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const Mesh moved = test::moved_rigidly_and_scaled(test::shuffled(marked, seed), seed);
-    EXPECT_EQ(message_in(moved), settings.message) << mesh << seed;
-    EXPECT_EQ(message_in(test::with_uniform_noise(moved, intensity, seed)), settings.message)
+    EXPECT_EQ(message_in(moved), request.message) << mesh << seed;
+    EXPECT_EQ(message_in(test::with_uniform_noise(moved, intensity, seed)), request.message)
         << mesh << seed;
-    EXPECT_EQ(message_in(test::quantised(moved, bits)), settings.message) << mesh << seed;
+    EXPECT_EQ(message_in(test::quantised(moved, bits)), request.message) << mesh << seed;
   }
 }
 
@@ -214,10 +203,9 @@ TEST(RealMeshes, IntegralMarksSurviveNoiseOnThePapersModels) {
 TEST(RealMeshes, OutputDiffersFromInputInMovedCoordinatesOnly) {
   if (!fs::exists(kBunny)) GTEST_SKIP() << "glmark2-data is not installed";
   const test::TempFolder folder;
-  JobSettings settings;
-  settings.message = {'x'};
-  const Record record = mark_file(kBunny, folder.path(), settings);
-  std::istringstream before(test::read_all(kBunny)), after(test::read_all(record.job.out));
+  const MarkRequest request = resolve({{"message", std::string("x")}});
+  const MarkedFile record = mark_file(kBunny, folder / "bunny.obj", request, Key::trial());
+  std::istringstream before(test::read_all(kBunny)), after(test::read_all(record.out));
   std::string a, b;
   std::size_t changed = 0;
   while (std::getline(before, a)) {
@@ -268,21 +256,21 @@ TEST(RealMeshes, EveryFileOfACollectionGetsARecord) {
   manifest += "{\"mesh\": \"pipe.obj\"}\n{\"mesh\": \"folder.obj\"}\n{\"mesh\": \"absent.obj\"}\n";
   expected += 3;
 
-  JobSettings settings;
-  settings.message = {'c', 'o', 'l', 'l', 'e', 'c', 't', '!'};
-  ManifestReader jobs(folder.write("m.jsonl", manifest), settings, folder / "out");
+  ManifestReader jobs(folder.write("m.jsonl", manifest), {{"message", std::string("collect!")}},
+                      folder / "out");
   std::vector<Record> records;
   const std::atomic<bool> stop{false};
   run_jobs(
       jobs, Key::trial(), {}, [&](const Record& record) { records.push_back(record); }, stop);
   EXPECT_EQ(records.size(), expected);
-  for (const Record& record : records) {
-    EXPECT_NE(record.status, Status::Failed) << record.error;
-    EXPECT_EQ(record.status == Status::Marked, fs::exists(record.job.out)) << record.job.mesh;
-    EXPECT_EQ(record.status == Status::Marked, record.error.empty());
-    if (record.status != Status::Marked) {
+  for (const Record& done : records) {
+    const MarkedFile& record = done.file;
+    EXPECT_NE(record.status, FileStatus::Failed) << record.error;
+    EXPECT_EQ(record.status == FileStatus::Marked, fs::exists(record.out)) << record.mesh;
+    EXPECT_EQ(record.status == FileStatus::Marked, record.error.empty());
+    if (record.status != FileStatus::Marked) {
       EXPECT_EQ(record.error.find('\n'), std::string::npos);
-      EXPECT_EQ(record.error.rfind(record.job.mesh.string() + ": ", 0), 0U) << record.error;
+      EXPECT_EQ(record.error.rfind(record.mesh.string() + ": ", 0), 0U) << record.error;
     }
   }
 }

@@ -9,6 +9,7 @@
 #include "engine/marking/extract.h"
 #include "engine/marking/mark.h"
 #include "engine/marking/settle.h"
+#include "engine/scheme/registry.h"
 #include "tests/support/attacks.h"
 #include "tests/support/shapes.h"
 
@@ -19,7 +20,8 @@ const Message kMessage{'a', 'f', 'f', 'i', 'n', 'e', ' ', '8'};
 
 MarkOptions options_with(AieGroups groups) {
   MarkOptions options = default_mark_options("aie", false);
-  options.scheme_options.groups = groups;
+  options.scheme_options["aie_groups"] =
+      std::string(kAieGroupNames.at(static_cast<std::size_t>(groups)));
   return options;
 }
 
@@ -33,7 +35,7 @@ Mesh marked_ball(const MarkOptions& options) {
 std::optional<Message> read(const Mesh& mesh, const MarkOptions& options) {
   const test::Solid solid(mesh);
   const WordCode code(Key::trial(), options.format);
-  return extract(solid.surface(), AieScheme(code, options.scheme_options), code).message;
+  return extract(solid.surface(), options.encoding(), Key::trial()).message;
 }
 
 // Interior edge of a grid whose points are all of valence six.
@@ -99,8 +101,9 @@ TEST(EdgeNeighbourhood, NeedsASurfaceAllAround) {
 TEST(Aie, BasesMayBeSharedButAreNeverMoved) {
   const auto& ball = test::bumpy_ball();
   const MarkOptions options = options_with(AieGroups::One);
-  const AieScheme scheme(WordCode(Key::trial(), options.format), options.scheme_options);
-  const UnitSet units = scheme.find_units(ball.surface());
+  const auto scheme =
+      make_scheme("aie", WordCode(Key::trial(), options.format), options.scheme_options);
+  const UnitSet units = scheme->find_units(ball.surface());
   for (std::size_t i = 0; i < units.size(); ++i) {
     EXPECT_EQ(units.moved[i].size(), 4U);
     EXPECT_EQ(units.read[i].size(), 8U);
@@ -145,8 +148,7 @@ TEST(Aie, NoUnitIsReadTwice) {
     const Marking marking =
         mark(ball.surface(), kMessage, Key::trial(), options, test::as_float, 1e-7);
     const Mesh marked{marking.positions, ball.mesh.triangles};
-    const Extraction found =
-        extract({marked, ball.halfedges}, AieScheme(code, options.scheme_options), code);
+    const Extraction found = extract({marked, ball.halfedges}, options.encoding(), Key::trial());
     EXPECT_GE(found.agreeing, marking.carriers.size());
     EXPECT_LE(found.agreeing, marking.carriers.size() * 21 / 20);  // some by chance
   }
@@ -158,7 +160,7 @@ TEST(Aie, AllNeighboursOutliveDamageThatOneDoesNot) {
   const auto surviving = [](AieGroups groups) {
     const MarkOptions options = options_with(groups);
     const WordCode code(Key::trial(), options.format);
-    const AieScheme scheme(code, options.scheme_options);
+    const auto scheme = make_scheme("aie", code, options.scheme_options);
     const auto& ball = test::bumpy_ball();
     const Marking marking =
         mark(ball.surface(), kMessage, Key::trial(), options, test::as_float, 1e-7);
@@ -167,7 +169,7 @@ TEST(Aie, AllNeighboursOutliveDamageThatOneDoesNot) {
       const bool carries = marking.positions[i] != ball.mesh.positions[i];
       if (carries && random_unit(3, i, 0) < 0.1) damaged.positions[i] *= 1.002;
     }
-    const Extraction found = extract({damaged, ball.halfedges}, scheme, code);
+    const Extraction found = extract({damaged, ball.halfedges}, *scheme, code);
     EXPECT_EQ(found.message, kMessage);
     return static_cast<double>(found.agreeing) / static_cast<double>(marking.carriers.size());
   };
@@ -213,7 +215,7 @@ TEST(Aie, LessThanAQuarterOfTheUnoptimisedMove) {
 }
 
 TEST(Aie, RefusesWordsThatDoNotFit) {
-  SchemeOptions options;
+  const AieOptions options;
   EXPECT_THROW(AieScheme(WordCode(Key::trial(), {11, 11, 11}), options), Error);
   EXPECT_NO_THROW(AieScheme(WordCode(Key::trial(), {5, 9, 10}), options));
   EXPECT_NO_THROW(AieScheme(WordCode(Key::trial(), {3, 3, 5}), options));

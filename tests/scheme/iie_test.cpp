@@ -10,6 +10,7 @@
 #include "engine/marking/settle.h"
 #include "engine/mesh/edge_length.h"
 #include "engine/scheme/iie/ring_signature.h"
+#include "engine/scheme/registry.h"
 #include "tests/support/arenas.h"
 #include "tests/support/attacks.h"
 #include "tests/support/shapes.h"
@@ -23,14 +24,14 @@ const Message kMessage{'b', 'a', 'l', 'l', 's', ' ', '8', '!'};
 struct Marked {
   MarkOptions options = default_mark_options("iie", false);
   WordCode code{Key::trial(), options.format};
-  IieScheme scheme{code, options.scheme_options};
+  std::unique_ptr<Scheme> scheme = make_scheme("iie", code, options.scheme_options);
   test::Solid original{make_sample_shape(SampleShape::Closed, 100000, 11)};
   Marking marking = mark(original.surface(), kMessage, Key::trial(), options, test::as_float, 1e-7);
   Mesh mesh{marking.positions, original.mesh.triangles};
 
   [[nodiscard]] Extraction read(const Mesh& other) const {
     const test::Solid solid(other);
-    return extract(solid.surface(), scheme, code, options.scheme_options.doubtful_parts);
+    return extract(solid.surface(), options.encoding(), Key::trial());
   }
 };
 
@@ -91,8 +92,8 @@ TEST(Iie, DamageIsLocal) {
 
 TEST(Iie, MovesOnlyWhatNoOtherUnitReads) {
   const auto& ball = test::bumpy_ball();
-  const SchemeDefaults defaults = IieScheme::defaults();
-  const IieScheme scheme(WordCode(Key::trial(), defaults.fill_format), defaults.fill_options);
+  const IieScheme scheme(WordCode(Key::trial(), IieOptions::format(true)),
+                         IieOptions::defaults(true));
   const UnitSet units = scheme.find_units(ball.surface());
   const auto valid = choose_layout(Conflicts(units.moved, units.read_or_moved(),
                                              ball.mesh.positions.size(), ConflictRule::ReadWrite),
@@ -122,15 +123,20 @@ TEST(Iie, FillIsReadBackAndOptimisationPays) {
 }
 
 TEST(Iie, RefusesWhatCannotBe) {
-  const auto refuses = [](const WordFormat& format, const SchemeOptions& options) {
+  const auto refuses = [](const WordFormat& format, const IieOptions& options) {
     EXPECT_THROW(IieScheme(WordCode(Key::trial(), format), options), Error);
   };
   refuses({8, 9, 4}, {});
   refuses({1, 5, 17}, {});
-  refuses({1, 5, 4}, {.radius_edges = 1});
-  refuses({1, 5, 4}, {.radius = -1});
-  refuses({1, 5, 4}, {.centre_rings = 0});
-  refuses({1, 5, 4}, {.site_rings = 9});
+  const auto with = [](const auto& change) {
+    IieOptions options;
+    change(options);
+    return options;
+  };
+  refuses({1, 5, 4}, with([](IieOptions& options) { options.radius_edges = 1; }));
+  refuses({1, 5, 4}, with([](IieOptions& options) { options.radius = -1; }));
+  refuses({1, 5, 4}, with([](IieOptions& options) { options.centre_rings = 0; }));
+  refuses({1, 5, 4}, with([](IieOptions& options) { options.site_rings = 9; }));
 }
 
 TEST(RingSignatures, DependOnConnectivityAloneAndTellPointsApart) {

@@ -1,6 +1,4 @@
 // What every scheme promises, whatever its invariants are.
-#include "engine/scheme/scheme.h"
-
 #include <numeric>
 #include <set>
 
@@ -10,6 +8,7 @@
 #include "engine/base/random.h"
 #include "engine/layout/layout.h"
 #include "engine/marking/mark.h"
+#include "engine/scheme/registry.h"
 #include "tests/support/arenas.h"
 #include "tests/support/attacks.h"
 #include "tests/support/shapes.h"
@@ -21,24 +20,22 @@ class EveryScheme : public testing::TestWithParam<std::string_view> {
  protected:
   // Every place is a candidate, sizes are fixed: what is embedded is read to the last bit.
   [[nodiscard]] std::unique_ptr<Scheme> scheme(CostFunction cost = {}) const {
-    SchemeOptions options = fixed_for(test::bumpy_ball().mesh, relative_);
-    options.cost = cost;
-    return make_scheme(std::string(GetParam()), code_, options);
+    return make_scheme(GetParam(), code_, fixed_for(test::bumpy_ball().mesh, relative_), cost);
   }
   [[nodiscard]] std::unique_ptr<Scheme> relative_scheme() const {
     return make_scheme(std::string(GetParam()), code_, relative_);
   }
 
-  static SchemeOptions options_of(std::string_view name) {
-    SchemeOptions options = scheme_defaults(std::string(name)).options;
-    options.radius_edges = 3.5;
-    options.centre_rings = 1;
-    options.site_rings = 0;
+  static OptionValues options_of(std::string_view name) {
+    OptionValues options = scheme_info(name).defaults(false).options;
+    if (name != "iie") return options;
+    options["radius_edges"] = 3.5;
+    options["site_rings"] = std::int64_t{0};
     return options;
   }
 
-  SchemeOptions relative_ = options_of(GetParam());
-  WordCode code_{Key::trial(), scheme_defaults(std::string(GetParam())).format};
+  OptionValues relative_ = options_of(GetParam());
+  WordCode code_{Key::trial(), scheme_info(GetParam()).defaults(false).format};
   double cost_precision_ = GetParam() == "iie" ? 0.02 : 1e-5;  // see IieScheme::costs
 };
 INSTANTIATE_TEST_SUITE_P(All, EveryScheme,
@@ -248,17 +245,25 @@ TEST_P(EveryScheme, ResultsDoNotDependOnThreads) {
 }
 
 TEST_P(EveryScheme, RefusesCellsWithoutWidth) {
-  SchemeOptions options;
   for (const double step : {0.0, -1.0, 10.0, std::nan("")}) {
-    options.step = step;
-    EXPECT_THROW((void)make_scheme(std::string(GetParam()), code_, options), Error);
+    EXPECT_THROW((void)make_scheme(GetParam(), code_, {{"step", step}}), Error) << step;
   }
 }
 
 TEST(Schemes, HaveNames) {
-  EXPECT_THROW((void)scheme_defaults("xyz"), Error);
-  EXPECT_THROW((void)aie_groups("some"), Error);
-  EXPECT_EQ(aie_groups(std::string(name_of(AieGroups::All))), AieGroups::All);
+  EXPECT_THROW((void)scheme_info("xyz"), Error);
+}
+
+// What applies is written down whole, so that a record says all that a reader needs.
+TEST_P(EveryScheme, DefaultsNameEveryOption) {
+  for (const bool fill : {false, true}) {
+    const OptionValues values = scheme_info(GetParam()).defaults(fill).options;
+    EXPECT_EQ(values.size(), scheme_info(GetParam()).options.size());
+    for (const OptionSpec& spec : scheme_info(GetParam()).options) {
+      ASSERT_TRUE(values.contains(spec.key)) << spec.key;
+      EXPECT_EQ(spec.checked(values.at(spec.key)), values.at(spec.key)) << spec.key;
+    }
+  }
 }
 
 }  // namespace

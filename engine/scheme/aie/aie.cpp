@@ -44,7 +44,7 @@ AieScheme::Channel AieScheme::make_channel(const WordCode& code, double step, st
           Quantiser(step / kPlaneSteps, bits, code.offset(group))};
 }
 
-AieScheme::AieScheme(const WordCode& code, const SchemeOptions& options)
+AieScheme::AieScheme(const WordCode& code, const AieOptions& options)
     : options_(options),
       format_(code.format()),
       marker_(code.marker()),

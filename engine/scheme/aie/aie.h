@@ -26,6 +26,7 @@
 #include <array>
 
 #include "engine/scheme/aie/affine_norm.h"
+#include "engine/scheme/aie/aie_options.h"
 #include "engine/scheme/aie/edge_neighbourhood.h"
 #include "engine/scheme/quantiser.h"
 #include "engine/scheme/scheme.h"
@@ -37,11 +38,7 @@ class LocalCost;
 class AieScheme final : public Scheme {
  public:
   // Throws Error Usage if m + s + w > 32 or the step is out of range.
-  AieScheme(const WordCode& code, const SchemeOptions& options);
-
-  [[nodiscard]] static SchemeDefaults defaults() {
-    return {{6, 8, 10}, {.step = 0.02}, {6, 13, 5}, {.step = 0.004}};
-  }
+  AieScheme(const WordCode& code, const AieOptions& options);
 
   // An anchor is kAlternatives * edge + alternative: one way of grouping. O(edges), parallel.
   [[nodiscard]] UnitSet find_units(const Surface& surface) const override;
@@ -108,7 +105,7 @@ class AieScheme final : public Scheme {
   [[nodiscard]] std::optional<UnitReading> read_unit(const Surface& surface, const AffineNorm& norm,
                                                      std::uint32_t anchor) const;
 
-  SchemeOptions options_;
+  AieOptions options_;
   WordFormat format_;
   std::uint32_t marker_;
   std::array<Channel, 4> channels_;

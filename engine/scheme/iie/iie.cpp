@@ -63,6 +63,11 @@ std::optional<std::vector<std::uint32_t>> points_within(const Halfedges& halfedg
   return found;
 }
 
+// Radius of the balls in model units.
+double radius_on(const Mesh& mesh, const IieOptions& options) {
+  return options.radius > 0 ? options.radius : options.radius_edges * mean_edge_length(mesh);
+}
+
 // A regular mesh has about 7 (r / e)^2 triangles in a ball; where there are far more, points lie in
 // heaps, and to look at all of them from all of them would take for ever.
 std::size_t most_triangles_in(double radius, double edge) {
@@ -148,9 +153,9 @@ struct IieScheme::Ground {
   std::vector<char> unfit;           // triangles at a boundary
   std::vector<std::uint32_t> sites;  // points that may be centres, ascending
 
-  Ground(const Surface& on, const SchemeOptions& options, std::uint64_t seed)
+  Ground(const Surface& on, const IieOptions& options, std::uint64_t seed)
       : surface(on),
-        radius(fixed_for(on.mesh, options).radius),
+        radius(radius_on(on.mesh, options)),
         read_radius(radius),
         centre_rings(options.centre_rings),
         most_triangles(most_triangles_in(radius, mean_edge_length(on.mesh))),
@@ -259,7 +264,7 @@ bool IieScheme::Ground::sample(Ball& ball) const {
   return true;
 }
 
-IieScheme::IieScheme(const WordCode& code, const SchemeOptions& options)
+IieScheme::IieScheme(const WordCode& code, const IieOptions& options)
     : options_(options),
       marker_(code.marker()),
       marker_bits_(code.format().marker_bits),
@@ -508,7 +513,7 @@ Embedding IieScheme::embed(const Surface& surface, const UnitSet& units,
   if (options_.radius > 0) return embedding;
   // the mark changes the mean edge length a little, and with it the radius it will be read with
   for (int round = 0; round < kRadiusRounds; ++round) {
-    ground.read_radius = fixed_for({embedding.positions, surface.mesh.triangles}, options_).radius;
+    ground.read_radius = radius_on({embedding.positions, surface.mesh.triangles}, options_);
     embedding = embed_on(ground, units, placements, words);
   }
   return embedding;

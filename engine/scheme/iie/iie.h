@@ -28,6 +28,7 @@
 
 #include <optional>
 
+#include "engine/scheme/iie/iie_options.h"
 #include "engine/scheme/iie/integral_invariants.h"
 #include "engine/scheme/quantiser.h"
 #include "engine/scheme/scheme.h"
@@ -40,19 +41,7 @@ class IieScheme final : public Scheme {
  public:
   // Throws Error Usage if marker and subscript, or the part, have more than 16 bits, or for a step,
   // radius or number of rings out of range.
-  IieScheme(const WordCode& code, const SchemeOptions& options);
-
-  [[nodiscard]] static SchemeDefaults defaults() {
-    return {.format = {0, 5, 4},
-            .options = {.step = 0.007,
-                        .doubtful_parts = 10,
-                        .radius_edges = 3.8,
-                        .centre_rings = 1,
-                        .site_rings = 4},
-            .fill_format = {1, 9, 6},
-            .fill_options = {.step = 1.25e-4},
-            .has_few_units = true};
-  }
+  IieScheme(const WordCode& code, const IieOptions& options);
 
   // Anchors are points. O(points * triangles a ball), parallel.
   [[nodiscard]] UnitSet find_units(const Surface& surface) const override;
@@ -106,7 +95,7 @@ class IieScheme final : public Scheme {
     return marker_ | word.subscript << marker_bits_;
   }
 
-  SchemeOptions options_;
+  IieOptions options_;
   std::uint32_t marker_;
   int marker_bits_;
   Quantiser area_;

@@ -198,7 +198,7 @@ TsqScheme::Channel TsqScheme::make_channel(const WordCode& code, double step, in
           Quantiser(step, bits - height_bits, code.offset(2 * role + 1))};
 }
 
-TsqScheme::TsqScheme(const WordCode& code, const SchemeOptions& options)
+TsqScheme::TsqScheme(const WordCode& code, const TsqOptions& options)
     : options_(options),
       marker_(code.marker()),
       marker_channel_(make_channel(code, options.step, code.format().marker_bits, 0)),

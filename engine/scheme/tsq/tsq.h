@@ -24,16 +24,13 @@
 #include "engine/scheme/quantiser.h"
 #include "engine/scheme/scheme.h"
 #include "engine/scheme/tsq/triangle_shape.h"
+#include "engine/scheme/tsq/tsq_options.h"
 
 namespace triglyph {
 
 class TsqScheme final : public Scheme {
  public:
-  TsqScheme(const WordCode& code, const SchemeOptions& options);
-
-  [[nodiscard]] static SchemeDefaults defaults() {
-    return {{6, 8, 9}, {.step = 0.02}, {6, 13, 9}, {.step = 0.004}};
-  }
+  TsqScheme(const WordCode& code, const TsqOptions& options);
 
   // Anchors are triangles. O(triangles), parallel.
   [[nodiscard]] UnitSet find_units(const Surface& surface) const override;
@@ -96,7 +93,7 @@ class TsqScheme final : public Scheme {
   void read_outer(const Mesh& mesh, const std::array<std::uint32_t, 6>& points,
                   Reading& reading) const;
 
-  SchemeOptions options_;
+  TsqOptions options_;
   std::uint32_t marker_;
   Channel marker_channel_;
   std::array<Channel, 3> outer_channels_;  // S, D1, D2

@@ -1,14 +1,14 @@
 // A written or found file with what it takes to read it.
 #pragma once
 
-#include <algorithm>
 #include <filesystem>
 #include <span>
 #include <vector>
 
 #include "engine/io/mesh_file.h"
-#include "engine/marking/mark.h"
-#include "engine/mesh/halfedges.h"
+#include "engine/marking/marking.h"
+#include "engine/mesh/surface.h"
+#include "engine/message/votes.h"
 
 namespace triglyph {
 
@@ -22,10 +22,10 @@ struct Readable {
   [[nodiscard]] Surface surface() const { return {file.mesh(), halfedges}; }
 };
 
-// The carriers whose whole word was read at their anchor. Both ascend by anchor. O(both).
-inline std::vector<Carrier> carriers_read(std::span<const Carrier> carriers,
-                                          std::span<const Word> words,
-                                          std::span<const Reading> readings) {
+// Returns the carriers whose whole word was read at their anchor. Both ascend by anchor. O(both).
+[[nodiscard]] inline std::vector<Carrier> carriers_read(std::span<const Carrier> carriers,
+                                                        std::span<const Word> words,
+                                                        std::span<const Reading> readings) {
   std::vector<Carrier> found;
   auto reading = readings.begin();
   for (const Carrier& carrier : carriers) {

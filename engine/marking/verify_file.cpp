@@ -1,11 +1,11 @@
-#include "manifests/verify.h"
+#include "engine/marking/verify_file.h"
 
 #include <algorithm>
 
 #include "engine/base/error.h"
 #include "engine/marking/extract.h"
-#include "engine/message/key.h"
-#include "manifests/readable.h"
+#include "engine/marking/readable.h"
+#include "engine/scheme/registry.h"
 
 namespace triglyph {
 namespace {
@@ -46,18 +46,18 @@ std::vector<std::uint64_t> vertices_of(const MeshFile& file, const PointLists& l
 }
 
 // Anchors are numbers of the mesh as it was written: nothing if it is numbered otherwise now.
-std::optional<Damage> damage_of(const RecordedMark& recorded, const Readable& readable,
+std::optional<Damage> damage_of(const MarkedFile& marked, const Readable& readable,
                                 const Scheme& scheme, std::span<const Word> words,
                                 std::span<const Reading> readings, std::uint32_t units_found,
                                 bool locate) {
-  const bool same_size = readable.file.mesh().positions.size() == recorded.points &&
-                         readable.file.face_count() == recorded.faces;
-  if (!recorded.units || !same_size) return std::nullopt;
-  const std::vector<Carrier> intact = carriers_read(*recorded.units, words, readings);
+  const bool same_size = readable.file.mesh().positions.size() == marked.points &&
+                         readable.file.face_count() == marked.faces;
+  if (!marked.units || !same_size) return std::nullopt;
+  const std::vector<Carrier> intact = carriers_read(*marked.units, words, readings);
   if (2 * intact.size() < units_found) return std::nullopt;
-  const std::vector<std::uint32_t> damaged = anchors_not_among(*recorded.units, intact);
+  const std::vector<std::uint32_t> damaged = anchors_not_among(*marked.units, intact);
   Damage damage;
-  damage.units_expected = static_cast<std::uint32_t>(recorded.units->size());
+  damage.units_expected = static_cast<std::uint32_t>(marked.units->size());
   damage.units_damaged = static_cast<std::uint32_t>(damaged.size());
   if (locate && !damaged.empty()) {
     damage.vertices = vertices_of(readable.file, scheme.points_of(readable.surface(), damaged));
@@ -85,32 +85,34 @@ std::string_view name_of(FileVerdict verdict) {
   return "";
 }
 
-Verification verify_file(const RecordedMark& recorded, const Key& key, bool locate) {
+Verification verify_file(const MarkedFile& marked, const Key& key, bool locate) {
   Verification result;
-  if (recorded.status != Status::Marked) {
-    result.detail = "the record says \"" + std::string(name_of(recorded.status)) + "\"";
+  if (!marked.is_marked()) {
+    result.detail = "the mesh was not marked: " + std::string(name_of(marked.status));
     return result;
   }
-  if (!std::filesystem::exists(recorded.out)) {
+  if (!std::filesystem::exists(marked.out)) {
     result.verdict = FileVerdict::Missing;
-    result.detail = recorded.out.string() + ": no such file";
+    result.detail = marked.out.string() + ": no such file";
     return result;
   }
   try {
-    const Readable readable(recorded.out);
-    const WordCode code(key, recorded.options.format);
-    const auto scheme = make_scheme(recorded.options.scheme, code, recorded.options.scheme_options);
+    const Readable readable(marked.out);
+    const Encoding encoding = marked.encoding();
+    const WordCode code(key, encoding.format);
+    const auto scheme = make_scheme(encoding.scheme, code, encoding.scheme_options);
     const Extraction found =
-        extract(readable.surface(), *scheme, code, recorded.options.scheme_options.doubtful_parts);
+        extract(readable.surface(), *scheme, code, doubtful_parts(encoding.scheme_options));
+    const MarkRequest& request = marked.request;
     const std::vector<Word> words =
-        recorded.fill ? code.fill_words(recorded.parts) : code.words_of(recorded.message);
+        request.fill ? code.fill_words(marked.parts) : code.words_of(request.message);
     result.units_found = count_words(code, words, found.readings);
-    const bool carries = recorded.fill ? 2 * result.units_found > recorded.units_embedded
-                                       : found.message == recorded.message;
-    const bool right_key = recorded.key_fingerprint == key.fingerprint();
+    const bool carries = request.fill ? 2 * result.units_found > marked.units_embedded
+                                      : found.message == request.message;
+    const bool right_key = marked.key_fingerprint == key.fingerprint();
     if (right_key) {
       result.damage =
-          damage_of(recorded, readable, *scheme, words, found.readings, result.units_found, locate);
+          damage_of(marked, readable, *scheme, words, found.readings, result.units_found, locate);
     }
     if (result.damage) {
       result.units_found = result.damage->units_expected - result.damage->units_damaged;
@@ -118,8 +120,8 @@ Verification verify_file(const RecordedMark& recorded, const Key& key, bool loca
     if (!carries) {
       result.verdict = FileVerdict::Lost;
       result.detail = right_key ? "the message is not in the file"
-                                : "marked under another key, " + recorded.key_fingerprint;
-    } else if (content_hash(readable.file.bytes()) != recorded.output_hash) {
+                                : "marked under another key, " + marked.key_fingerprint;
+    } else if (content_hash(readable.file.bytes()) != marked.output_hash) {
       result.verdict = FileVerdict::Altered;
       result.detail = "the bytes differ from those written";
     } else {

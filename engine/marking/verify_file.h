@@ -1,5 +1,5 @@
-// Is the file of a record there, unchanged, and does it carry its message? Where not, which of its
-// units are damaged: the mark locates what was done to the mesh.
+// Is a marked file there, unchanged, and does it carry its message? Where not, which of its units
+// are damaged: the mark locates what was done to the mesh.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "manifests/record.h"
+#include "engine/marking/mark_file.h"
 
 namespace triglyph {
 
@@ -18,11 +18,11 @@ enum class FileVerdict {
   Missing,    // no file
   Lost,       // readable, but the message is not there
   Damaged,    // not readable as a mesh
-  NotMarked,  // the record is of a mesh that was not marked
+  NotMarked,  // the mesh was not marked
 };
 [[nodiscard]] std::string_view name_of(FileVerdict verdict);
 
-// Units of the record that no longer read what was written there.
+// Units that no longer read what was written there.
 struct Damage {
   std::uint32_t units_expected = 0;
   std::uint32_t units_damaged = 0;
@@ -36,12 +36,12 @@ struct Verification {
   // of the mark.
   std::uint32_t units_found = 0;
   std::string detail;            // why, in one line; empty if intact
-  std::optional<Damage> damage;  // if the record names the units and the file still numbers them
+  std::optional<Damage> damage;  // if the units are known and the file still numbers them
 };
 
-// `locate`: also name the vertices of damaged units. Does not throw: what is wrong with the file is
-// the verdict. O(file) and the scheme's reading.
-[[nodiscard]] Verification verify_file(const RecordedMark& recorded, const Key& key,
+// Looks at the file named by `marked.out`. `locate`: also names the vertices of damaged units. Does
+// not throw: what is wrong with the file is the verdict. O(file) and the scheme's reading.
+[[nodiscard]] Verification verify_file(const MarkedFile& marked, const Key& key,
                                        bool locate = false);
 
 }  // namespace triglyph

@@ -1,0 +1,258 @@
+#include "engine/marking/mark_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <chrono>
+#include <new>
+
+#include "engine/base/error.h"
+#include "engine/base/output_file.h"
+#include "engine/base/parallel.h"
+#include "engine/geometry/box.h"
+#include "engine/marking/extract.h"
+#include "engine/marking/mark.h"
+#include "engine/marking/readable.h"
+#include "engine/metric/deformation.h"
+#include "engine/metric/hausdorff.h"
+#include "engine/scheme/registry.h"
+
+namespace triglyph {
+namespace {
+
+// by FileStatus
+constexpr std::array<std::string_view, 11> kStatusNames = {
+    "marked",     "too small", "positions too coarse", "not verified",
+    "unreadable", "malformed", "unsupported",          "unwritable",
+    "usage",      "failed",    "interrupted"};
+
+FileStatus status_of(ErrorCode code) {
+  switch (code) {
+    case ErrorCode::Unreadable:
+      return FileStatus::Unreadable;
+    case ErrorCode::Malformed:
+      return FileStatus::Malformed;
+    case ErrorCode::Unsupported:
+      return FileStatus::Unsupported;
+    case ErrorCode::Unwritable:
+      return FileStatus::Unwritable;
+    case ErrorCode::Usage:
+      return FileStatus::Usage;
+  }
+  return FileStatus::Failed;
+}
+
+std::string lower_case_ending(const std::filesystem::path& path) {
+  std::string ending = path.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
+}
+
+}  // namespace
+
+std::string_view name_of(FileStatus status) {
+  return kStatusNames.at(static_cast<std::size_t>(status));
+}
+
+std::optional<FileStatus> file_status(std::string_view name) {
+  const auto at = std::find(kStatusNames.begin(), kStatusNames.end(), name);
+  if (at == kStatusNames.end()) return std::nullopt;
+  return static_cast<FileStatus>(at - kStatusNames.begin());
+}
+
+Encoding MarkedFile::encoding() const {
+  Encoding encoding = request.options.encoding();
+  encoding.format = format;
+  return encoding;
+}
+
+struct FileMarking::Work {
+  std::optional<MeshFile> file;
+  std::optional<Halfedges> halfedges;
+  Marking marking;
+  std::optional<OutputFile> output;
+};
+
+FileMarking::FileMarking(std::filesystem::path mesh, std::filesystem::path out, MarkRequest request)
+    : work_(std::make_unique<Work>()) {
+  result_.mesh = std::move(mesh);
+  result_.out = std::move(out);
+  result_.request = std::move(request);
+  result_.format = result_.request.options.format;
+  result_.status = FileStatus::Marked;  // until a stage finds otherwise
+}
+
+FileMarking::~FileMarking() = default;
+FileMarking::FileMarking(FileMarking&&) noexcept = default;
+
+// Ends the mesh's way with a reason.
+void FileMarking::end(FileStatus status, const std::string& reason) {
+  result_.status = status;
+  result_.error = result_.mesh.string() + ": " + reason;
+}
+
+// Runs one stage of a mesh that nothing has ended yet; the one place where exceptions stop.
+template <typename Stage>
+void FileMarking::run_stage(double& seconds, const Stage& stage) noexcept {
+  if (!result_.is_marked()) return;
+  const auto start = std::chrono::steady_clock::now();
+  try {
+    stage();
+  } catch (const Error& error) {
+    result_.status = status_of(error.code());
+    result_.error = error.path().empty() ? result_.mesh.string() + ": " + error.what()
+                                         : std::string(error.what());
+  } catch (const std::bad_alloc&) {
+    end(FileStatus::Failed, "not enough memory");
+  } catch (const std::exception& error) {
+    end(FileStatus::Failed, error.what());
+  }
+  seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void FileMarking::describe(const Marking& marking) {
+  result_.format = marking.format;
+  result_.parts = static_cast<std::uint32_t>(marking.words.size());
+  result_.candidates = marking.candidates;
+  result_.units_valid = marking.units_valid;
+  result_.units_bound = marking.units_bound;
+  result_.units_assigned = marking.units_assigned;
+  result_.cost_max = marking.cost_max;
+  result_.cost_sum = marking.cost_sum;
+  result_.times.layout = marking.layout_seconds;
+  result_.times.assign = marking.assign_seconds;
+}
+
+void FileMarking::load() noexcept {
+  run_stage(result_.times.load, [&] {
+    work_->file = MeshFile::open(result_.mesh);
+    const MeshFile& file = *work_->file;
+    result_.file_format = name_of(file.format());
+    result_.vertices = file.vertex_count();
+    result_.points = file.mesh().positions.size();
+    result_.faces = file.face_count();
+    parallel_pair([&] { result_.input_hash = content_hash(file.bytes()); },
+                  [&] { work_->halfedges = build_halfedges(file.mesh()); });
+  });
+}
+
+void FileMarking::mark(const Key& key) noexcept {
+  run_stage(result_.times.mark, [&] {
+    const MeshFile& file = *work_->file;
+    MarkOptions& options = result_.request.options;
+    result_.key_fingerprint = key.fingerprint();
+    if (result_.request.fill) {
+      options.scheme_options = fixed_for(file.mesh(), options.scheme_options);
+    }
+    const Surface surface{file.mesh(), *work_->halfedges};
+    const auto rounding = [&](const Vec3& point) { return file.round(point); };
+    work_->marking = triglyph::mark(surface, result_.request.message, key, options, rounding,
+                                    file.number_step());
+    describe(work_->marking);
+    if (work_->marking.status == MarkStatus::TooSmall) {
+      end(FileStatus::TooSmall, std::to_string(result_.units_valid) + " units carry " +
+                                    std::to_string(work_->marking.parts_carried) +
+                                    " of the message's " + std::to_string(result_.parts) +
+                                    " parts");
+    } else if (work_->marking.status == MarkStatus::TooCoarse) {
+      end(FileStatus::TooCoarse,
+          "numbers " + std::to_string(file.number_step()) + " apart are too coarse for the mark");
+    }
+  });
+}
+
+void FileMarking::write() noexcept {
+  run_stage(result_.times.write, [&] {
+    const std::vector<char> bytes = work_->file->patched(work_->marking.positions);
+    work_->output.emplace(result_.out);
+    parallel_pair([&] { result_.output_hash = content_hash(bytes); },
+                  [&] { work_->output->write(bytes); });
+  });
+}
+
+void FileMarking::read_back(const Key& key) noexcept {
+  run_stage(result_.times.read_back, [&] {
+    const Encoding encoding = result_.encoding();
+    const Readable written(work_->output->temporary_path());
+    const Extraction found = extract(written.surface(), encoding, key);
+    std::vector<Carrier> embedded =
+        carriers_read(work_->marking.carriers, work_->marking.words, found.readings);
+    result_.units_embedded = static_cast<std::uint32_t>(embedded.size());
+    const std::size_t carriers = work_->marking.carriers.size();
+    const bool verified = result_.request.fill
+                              ? !embedded.empty() && embedded.size() >= carriers * 99 / 100
+                              : found.message == result_.request.message;
+    if (!verified) {
+      end(FileStatus::NotVerified, "the mark could not be read back (" +
+                                       std::to_string(result_.units_embedded) + " of " +
+                                       std::to_string(result_.units_assigned) + " units)");
+      result_.output_hash.clear();
+      return;
+    }
+    if (result_.request.options.detail) result_.units = std::move(embedded);
+    work_->output->commit();
+  });
+  if (work_) work_->output.reset();
+}
+
+void FileMarking::measure() noexcept {
+  run_stage(result_.times.measure, [&] {
+    const Mesh& mesh = work_->file->mesh();
+    const std::vector<Vec3>& marked = work_->marking.positions;
+    const Displacement moved = displacement(mesh.positions, marked);
+    result_.displacement_max = moved.max;
+    result_.displacement_rms = moved.rms;
+    const double diagonal = box_diagonal(mesh.positions);
+    result_.hausdorff =
+        hausdorff_of_move(mesh.triangles, mesh.positions, marked, kHausdorffTolerance * diagonal)
+            .symmetric();
+    result_.hausdorff_rel_diag = result_.hausdorff / diagonal;
+  });
+  work_.reset();
+}
+
+void FileMarking::interrupt() noexcept {
+  if (result_.is_marked()) end(FileStatus::Interrupted, "interrupted");
+}
+
+MarkedFile mark_file(const std::filesystem::path& mesh, const std::filesystem::path& out,
+                     const MarkRequest& request, const Key& key) {
+  FileMarking marking(mesh, out, request);
+  marking.load();
+  marking.mark(key);
+  marking.write();
+  marking.read_back(key);
+  marking.measure();
+  return marking.result();
+}
+
+std::uint64_t estimate_memory(std::uint64_t file_bytes, const std::filesystem::path& mesh,
+                              bool fill) {
+  // Measured at 1 to 20 million triangles: bytes of memory for a byte of the file, a quarter on
+  // top; and bytes of the file for a vertex with its two triangles, from below.
+  struct Format {
+    std::string_view ending;
+    std::uint64_t memory;
+    std::uint64_t file_bytes_a_vertex;
+  };
+  constexpr std::array<Format, 4> kFormats = {
+      {{".ply", 18, 38}, {".stl", 10, 100}, {".off", 10, 45}, {".obj", 10, 60}}};
+  const std::string ending = lower_case_ending(mesh);
+  const auto known = std::find_if(kFormats.begin(), kFormats.end(),
+                                  [&](const Format& format) { return format.ending == ending; });
+  const Format& format = known == kFormats.end() ? kFormats.front() : *known;
+  constexpr std::uint64_t kProgram = std::uint64_t{1} << 20;
+  std::uint64_t bytes = kProgram + file_bytes * format.memory;
+  if (fill) {
+    // The costs of every unit under every word, and a copy by candidates: no layout has more units
+    // than a sixth of the vertices, and larger matrices are dealt into blocks.
+    const std::uint64_t units = file_bytes / format.file_bytes_a_vertex / 6;
+    constexpr std::uint64_t kMostPairs = std::uint64_t{1} << 26;
+    const bool is_large = units >= std::uint64_t{1} << 13;
+    bytes += 2 * sizeof(float) * (is_large ? kMostPairs : units * units);
+  }
+  return bytes;
+}
+
+}  // namespace triglyph

@@ -1,0 +1,282 @@
+#include "engine/marking/options.h"
+
+#include <algorithm>
+#include <array>
+
+#include "engine/base/error.h"
+#include "engine/message/key.h"
+#include "engine/scheme/registry.h"
+
+namespace triglyph {
+namespace {
+
+constexpr std::array<std::string_view, 3> kAssignNames = {"sequential", "bottleneck", "sum"};
+
+// The three forms of the message: a set of values holds one of them at most.
+constexpr std::array<std::string_view, 3> kMessageKeys = {"message", "message_hex", "fill"};
+
+// A search longer than a day is a slip of the pen; random seeds are exact as JSON numbers.
+constexpr double kMostSeconds = 86400;
+constexpr double kMostSeed = 9007199254740992.0;  // 2^53
+
+OptionSpec scheme_spec() {
+  return {"scheme", OptionKind::Choice, "", {}, {scheme_names().begin(), scheme_names().end()},
+          "tsq",    "Embedding scheme"};
+}
+
+std::vector<OptionSpec> message_specs() {
+  return {{"message", OptionKind::Text, "", {}, {}, "", "Message to hide, 1 to 256 bytes"},
+          {"message_hex", OptionKind::Text, "", {}, {}, "", "Message in hexadecimal"},
+          {"fill",
+           OptionKind::Flag,
+           "",
+           {},
+           {},
+           "",
+           "Hide a random message as long as the capacity, the paper's experiment"}};
+}
+
+using Options = MarkOptions;
+
+// The bits of a word are members of a member, so their places are written out.
+Option<Options> bits_option(std::string key, int WordFormat::*bits, OptionRange range,
+                            std::string help) {
+  return {{std::move(key), OptionKind::Count, "bits", range, {}, "the scheme's", std::move(help)},
+          [bits](Options& options, const OptionValue& value) {
+            options.format.*bits = static_cast<int>(std::get<std::int64_t>(value));
+            if (bits == &WordFormat::subscript_bits) options.keeps_subscript_bits = true;
+          },
+          [bits](const Options& options) {
+            return std::optional<OptionValue>(std::int64_t{options.format.*bits});
+          }};
+}
+
+// An option of the layout, which is a member of the options of marking.
+Option<Options> of_layout(Option<LayoutOptions> option) {
+  return {std::move(option.spec),
+          [set = std::move(option.set)](Options& options, const OptionValue& value) {
+            set(options.layout, value);
+          },
+          [get = std::move(option.get)](const Options& options) { return get(options.layout); }};
+}
+
+OptionTable<Options> make_table() {
+  using Layout = LayoutOptions;
+  return {
+      bits_option("marker_bits", &WordFormat::marker_bits, {0, 16}, "Bits of the marker, m"),
+      bits_option("subscript_bits", &WordFormat::subscript_bits, {1, 16},
+                  "Bits of the subscript, s; with --fill as few as needed unless given"),
+      bits_option("part_bits", &WordFormat::part_bits, {2, 32}, "Bits of the message in a unit, w"),
+      of_layout(choice_option<Layout>("layout", &Layout::method, layout_names(), "the scheme's",
+                                      "How units are chosen; first-fit is un-optimised")),
+      of_layout(count_option<Layout>("layout_iterations", &Layout::iterations, {1, 1e9}, "", "64",
+                                     "Passes over the candidates of a layout that searches")),
+      of_layout(number_option<Layout>(
+          "layout_seconds", &Layout::seconds, {0, kMostSeconds}, "seconds", "0",
+          "Search for so long instead; the result then depends on the machine")),
+      of_layout(count_option<Layout>("layout_seed", &Layout::seed, {0, kMostSeed}, "", "1",
+                                     "Seed of the search's random numbers")),
+      choice_option<Options>(
+          "conflicts", &Options::conflict_rule, conflict_names(), "read-write",
+          "Units interfere if one moves what the other reads, or if they share a point"),
+      choice_option<Options>("assign", &Options::assign, assign_names(), "bottleneck",
+                             "How words are assigned to units; sequential is un-optimised"),
+      choice_option<Options>("cost", &Options::cost, cost_names(), "displacement",
+                             "Local change that the assignment minimises"),
+      count_option<Options>("redundancy", &Options::redundancy, {0, 1e6}, "units", "32",
+                            "Units wanted for each part; 0: as many as there are"),
+      number_option<Options>("max_move", &Options::max_move_percent, {0, 100},
+                             "percent of the diagonal", "the scheme's",
+                             "Farthest move of a point that a repeat is worth; 0: any"),
+      number_option<Options>("drop_dearest", &Options::drop_dearest_percent, {0, 99.9}, "percent",
+                             "0",
+                             "Share of the candidates to leave out, those dear under every word: "
+                             "less capacity, less to be seen"),
+      flag_option<Options>("detail", &Options::detail,
+                           "Write every unit into the record, for verify --detail; always with "
+                           "iie")};
+}
+
+const OptionTable<Options>& table() {
+  static const OptionTable<Options> options = make_table();
+  return options;
+}
+
+// The options of all schemes, each key once: a key that two schemes share means the same in both,
+// and each checks its own range.
+std::vector<OptionSpec> scheme_specs() {
+  std::vector<OptionSpec> specs;
+  for (const std::string_view scheme : scheme_names()) {
+    for (const OptionSpec& spec : scheme_info(scheme).options) {
+      const auto same_key = [&](const OptionSpec& other) { return other.key == spec.key; };
+      const auto known = std::find_if(specs.begin(), specs.end(), same_key);
+      if (known == specs.end()) {
+        specs.push_back(spec);
+      } else {
+        known->range.least = std::min(known->range.least, spec.range.least);
+        known->range.most = std::max(known->range.most, spec.range.most);
+      }
+    }
+  }
+  return specs;
+}
+
+bool has_option(std::string_view scheme, std::string_view key) {
+  const auto& options = scheme_info(scheme).options;
+  return std::any_of(options.begin(), options.end(),
+                     [&](const OptionSpec& spec) { return spec.key == key; });
+}
+
+bool is_scheme_option(std::string_view key) {
+  const auto names = scheme_names();
+  return std::any_of(names.begin(), names.end(),
+                     [&](std::string_view scheme) { return has_option(scheme, key); });
+}
+
+// The values over the scheme's defaults; each scheme checks its own.
+void apply_scheme_options(const OptionValues& values, MarkOptions& options) {
+  for (const OptionSpec& spec : scheme_info(options.scheme).options) {
+    const auto found = values.find(spec.key);
+    if (found != values.end()) options.scheme_options[spec.key] = spec.checked(found->second);
+  }
+}
+
+MarkOptions resolved_options(const OptionValues& values, std::string_view scheme, bool fill) {
+  MarkOptions options = default_mark_options(scheme, fill);
+  apply_options(table(), values, options);
+  apply_scheme_options(values, options);
+  validate(options.format);
+  options.keeps_subscript_bits = options.keeps_subscript_bits && fill;
+  options.detail = options.detail || options.scheme == "iie";  // locating damage is its use
+  // a scheme checks what its options are worth together when it is made
+  (void)make_scheme(options.scheme, WordCode(Key::trial(), options.format), options.scheme_options);
+  return options;
+}
+
+}  // namespace
+
+std::span<const std::string_view> assign_names() {
+  return kAssignNames;
+}
+
+std::string_view name_of(AssignMethod method) {
+  return kAssignNames.at(static_cast<std::size_t>(method));
+}
+
+MarkOptions default_mark_options(std::string_view scheme, bool fill) {
+  const SchemeDefaults defaults = scheme_info(scheme).defaults(fill);
+  MarkOptions options;
+  options.scheme = scheme;
+  options.format = defaults.format;
+  options.scheme_options = defaults.options;
+  if (defaults.has_few_units && !fill) {
+    options.layout.method = LayoutMethod::LocalSearch;
+    options.max_move_percent = 0;
+  }
+  return options;
+}
+
+const std::vector<OptionSpec>& mark_option_specs() {
+  static const std::vector<OptionSpec> specs = [] {
+    std::vector<OptionSpec> all = message_specs();
+    all.push_back(scheme_spec());
+    for (OptionSpec& spec : scheme_specs()) all.push_back(std::move(spec));
+    for (const Option<Options>& option : table()) all.push_back(option.spec);
+    return all;
+  }();
+  return specs;
+}
+
+const std::vector<OptionSpec>& encoding_option_specs() {
+  static const std::vector<OptionSpec> specs = [] {
+    std::vector<OptionSpec> some = {scheme_spec()};
+    for (OptionSpec& spec : scheme_specs()) some.push_back(std::move(spec));
+    for (const char* key : {"marker_bits", "subscript_bits", "part_bits"}) {
+      some.push_back(find_option(table(), key)->spec);
+    }
+    some[0].default_text = "all";
+    return some;
+  }();
+  return specs;
+}
+
+const OptionSpec* find_mark_option(std::string_view key) {
+  for (const OptionSpec& spec : mark_option_specs()) {
+    if (spec.key == key) return &spec;
+  }
+  return nullptr;
+}
+
+OptionValues layered(OptionValues base, const OptionValues& over) {
+  const bool names_message =
+      std::any_of(kMessageKeys.begin(), kMessageKeys.end(), [&](std::string_view key) {
+        const auto found = over.find(key);
+        return found != over.end() && found->second != OptionValue(false);
+      });
+  if (names_message) {
+    for (const std::string_view key : kMessageKeys) base.erase(std::string(key));
+  }
+  for (const auto& [key, value] : over) base.insert_or_assign(key, value);
+  return base;
+}
+
+void check_contradictions(const OptionValues& values, std::string_view scheme) {
+  std::string_view message_key;
+  for (const std::string_view key : kMessageKeys) {
+    const auto found = values.find(key);
+    if (found == values.end() || found->second == OptionValue(false)) continue;
+    if (!message_key.empty()) {
+      throw Error(ErrorCode::Usage, {}, "",
+                  "\"" + std::string(message_key) + "\" and \"" + std::string(key) +
+                      "\" exclude each other");
+    }
+    message_key = key;
+  }
+  for (const auto& [key, value] : values) {
+    if (!scheme.empty() && is_scheme_option(key) && !has_option(scheme, key)) {
+      throw Error(ErrorCode::Usage, {}, "",
+                  "\"" + key + "\" is no option of scheme " + std::string(scheme));
+    }
+  }
+}
+
+std::string scheme_of(const OptionValues& values) {
+  const auto found = values.find("scheme");
+  return found == values.end() ? Encoding{}.scheme
+                               : std::get<std::string>(scheme_spec().checked(found->second));
+}
+
+MarkRequest resolve(const OptionValues& values) {
+  MarkRequest request;
+  const auto text_of = [&](std::string_view key) -> const std::string* {
+    const auto found = values.find(key);
+    return found == values.end() ? nullptr : std::get_if<std::string>(&found->second);
+  };
+  const auto fill = values.find("fill");
+  request.fill = fill != values.end() && fill->second == OptionValue(true);
+  if (const std::string* text = text_of("message")) {
+    request.message.assign(text->begin(), text->end());
+  }
+  if (const std::string* hex = text_of("message_hex")) request.message = from_hex(*hex);
+  request.options = resolved_options(values, scheme_of(values), request.fill);
+  if (!request.fill) check_message(request.options.format, request.message.size());
+  return request;
+}
+
+std::vector<Encoding> encodings_of(const OptionValues& values) {
+  std::vector<Encoding> encodings;
+  for (const std::string_view scheme : scheme_names()) {
+    if (values.contains("scheme") && scheme_of(values) != scheme) continue;
+    encodings.push_back(resolved_options(values, scheme, false).encoding());
+  }
+  return encodings;
+}
+
+OptionValues values_of(const MarkOptions& options) {
+  OptionValues values = option_values(table(), options);
+  values.emplace("scheme", options.scheme);
+  for (const auto& [key, value] : options.scheme_options) values.emplace(key, value);
+  return values;
+}
+
+}  // namespace triglyph

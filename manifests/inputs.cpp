@@ -1,0 +1,101 @@
+#include "manifests/inputs.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <iterator>
+#include <string_view>
+#include <unordered_set>
+
+#include "engine/base/error.h"
+#include "manifests/manifest.h"
+
+namespace triglyph {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> meshes_in_folder(const fs::path& folder) {
+  std::vector<fs::path> found;
+  std::error_code error;
+  for (fs::recursive_directory_iterator it(folder, error), end; !error && it != end;
+       it.increment(error)) {
+    std::error_code ignored;
+    const bool is_hidden = it->path().filename().string().front() == '.';
+    if (is_hidden && it->is_directory(ignored)) it.disable_recursion_pending();
+    if (!is_hidden && it->is_regular_file(ignored) && is_mesh_name(it->path())) {
+      found.push_back(it->path());
+    }
+  }
+  if (error) throw Error(ErrorCode::Unreadable, folder, "", error.message());
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+std::vector<std::string> names_in(std::istream& list) {
+  const std::string text{std::istreambuf_iterator<char>(list), std::istreambuf_iterator<char>()};
+  const char separator = text.find('\0') == text.npos ? '\n' : '\0';
+  std::vector<std::string> names;
+  for (std::size_t start = 0; start < text.size();) {
+    std::size_t end = std::min(text.find(separator, start), text.size());
+    const std::size_t next = end + 1;
+    if (separator == '\n' && end > start && text[end - 1] == '\r') --end;
+    if (end > start) names.push_back(text.substr(start, end - start));
+    start = next;
+  }
+  return names;
+}
+
+std::vector<fs::path> meshes_of_manifest(const fs::path& manifest) {
+  // the message and the outputs do not matter here, only the meshes do
+  ManifestReader reader(manifest, {{"message", std::string("any")}}, ".");
+  std::vector<fs::path> meshes;
+  while (std::optional<Job> job = reader.next()) meshes.push_back(std::move(job->mesh));
+  return meshes;
+}
+
+std::vector<fs::path> files_named(const std::string& name) {
+  const bool has_control =
+      std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < 32 || c == 127; });
+  if (name.empty() || has_control) {
+    throw Error(ErrorCode::Usage, {}, "", "a file name is empty or holds a control character");
+  }
+  const fs::path path(name);
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) return meshes_in_folder(path);
+  if (path.extension() == ".jsonl") return meshes_of_manifest(path);
+  if (fs::exists(path, ignored) || name.find_first_of("*?[") == name.npos) return {path};
+  std::vector<fs::path> found = expand_glob(path);
+  if (found.empty()) throw Error(ErrorCode::Usage, path, "", "matches no file");
+  return found;
+}
+
+}  // namespace
+
+bool is_mesh_name(const fs::path& path) {
+  constexpr std::array<std::string_view, 4> kEndings = {".obj", ".off", ".ply", ".stl"};
+  std::string ending = path.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
+}
+
+std::vector<fs::path> gather_files(std::span<const std::string> names, std::istream& list) {
+  std::vector<fs::path> files;
+  std::unordered_set<std::string> known;
+  const auto add = [&](const std::string& name) {
+    for (fs::path& file : files_named(name)) {
+      if (known.insert(file.string()).second) files.push_back(std::move(file));
+    }
+  };
+  for (const std::string& name : names) {
+    if (name != "-") {
+      add(name);
+      continue;
+    }
+    for (const std::string& listed : names_in(list)) add(listed);
+  }
+  return files;
+}
+
+}  // namespace triglyph

@@ -1,0 +1,95 @@
+#include "engine/marking/options.h"
+
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "engine/base/error.h"
+#include "engine/marking/mark_file.h"
+#include "engine/scheme/registry.h"
+
+namespace triglyph {
+namespace {
+
+OptionValues with_message(OptionValues values) {
+  values.emplace("message", std::string("m"));
+  return values;
+}
+
+TEST(MarkOptions, EveryOptionIsDeclaredOnceAndSaysWhatItIs) {
+  std::set<std::string> keys;
+  for (const OptionSpec& spec : mark_option_specs()) {
+    EXPECT_TRUE(keys.insert(spec.key).second) << spec.key;
+    EXPECT_FALSE(spec.help.empty()) << spec.key;
+    EXPECT_EQ(find_mark_option(spec.key), &spec);
+  }
+  EXPECT_EQ(find_mark_option("no_such"), nullptr);
+  for (const std::string_view scheme : scheme_names()) {
+    for (const OptionSpec& spec : scheme_info(scheme).options) {
+      EXPECT_NE(find_mark_option(spec.key), nullptr) << spec.key;
+    }
+  }
+}
+
+// What a record writes down is all that a reader, or a second run, needs.
+TEST(MarkOptions, ValuesResolveToTheOptionsTheyCameFrom) {
+  for (const std::string_view scheme : scheme_names()) {
+    OptionValues values = with_message({{"scheme", std::string(scheme)},
+                                        {"step", 0.0125},
+                                        {"layout", std::string("local-search")},
+                                        {"layout_seed", std::int64_t{77}},
+                                        {"max_move", 0.3},
+                                        {"drop_dearest", 12.5},
+                                        {"redundancy", std::int64_t{9}},
+                                        {"cost", std::string("normal")},
+                                        {"part_bits", std::int64_t{8}}});
+    const MarkOptions options = resolve(values).options;
+    EXPECT_EQ(resolve(with_message(values_of(options))).options, options) << scheme;
+    EXPECT_EQ(options.layout.seed, 77U);
+    EXPECT_EQ(options.max_move_percent, 0.3);
+    EXPECT_EQ(options.cost, CostFunction::Normal);
+    EXPECT_EQ(number_in(options.scheme_options, "step", 0), 0.0125);
+  }
+}
+
+TEST(MarkOptions, AMessageInAnyFormReplacesOneInAnyOther) {
+  const OptionValues base = with_message({{"redundancy", std::int64_t{3}}});
+  const MarkRequest hex = resolve(layered(base, {{"message_hex", std::string("00ff")}}));
+  EXPECT_EQ(hex.message, (Message{0, 255}));
+  EXPECT_EQ(hex.options.redundancy, 3U);
+  EXPECT_TRUE(resolve(layered(base, {{"fill", true}})).fill);
+  EXPECT_EQ(resolve(layered(base, {{"fill", false}})).message, (Message{'m'}));
+  EXPECT_THROW((void)resolve({}), Error);
+}
+
+TEST(MarkOptions, OptionsOfAnotherSchemeContradictTheSchemeInUse) {
+  EXPECT_THROW(check_contradictions({{"radius", 1.0}}, "tsq"), Error);
+  EXPECT_NO_THROW(check_contradictions({{"radius", 1.0}}, "iie"));
+  EXPECT_NO_THROW(check_contradictions({{"radius", 1.0}}, ""));
+  EXPECT_NO_THROW(check_contradictions({{"step", 0.01}}, "aie"));
+}
+
+TEST(MarkOptions, AReaderThatIsToldNothingTriesEveryScheme) {
+  const std::vector<Encoding> all = encodings_of({});
+  ASSERT_EQ(all.size(), scheme_names().size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    EXPECT_EQ(all[i], default_mark_options(scheme_names()[i], false).encoding());
+  }
+  const std::vector<Encoding> one = encodings_of({{"scheme", std::string("iie")}});
+  ASSERT_EQ(one.size(), 1U);
+  EXPECT_EQ(one[0].scheme, "iie");
+}
+
+TEST(EstimateMemory, KnowsFormatsInAnyCaseAndTheCostsOfFill) {
+  constexpr std::uint64_t kFile = 2'700'000;  // a bunny's
+  EXPECT_EQ(estimate_memory(kFile, "a.PLY", false), estimate_memory(kFile, "a.ply", false));
+  EXPECT_GT(estimate_memory(kFile, "a.ply", false), estimate_memory(kFile, "a.obj", false));
+  // 5,300 units under as many words: two matrices of 114 MB
+  EXPECT_GT(estimate_memory(kFile, "a.obj", true), std::uint64_t{2} * 114'000'000);
+  // larger ones are dealt into blocks of 2^26 pairs
+  EXPECT_LT(estimate_memory(1'000'000'000, "a.obj", true),
+            estimate_memory(1'000'000'000, "a.obj", false) + (std::uint64_t{1} << 30));
+}
+
+}  // namespace
+}  // namespace triglyph
