@@ -38,12 +38,9 @@ std::optional<Message> read(const Mesh& mesh, const MarkOptions& options) {
 
 // Interior edge of a grid whose points are all of valence six.
 std::uint32_t middle_edge(const test::Solid& grid, std::uint32_t from, std::uint32_t to) {
-  const auto& kernel = grid.halfedges.kernel;
-  return static_cast<std::uint32_t>(
-      kernel
-          .edge_handle(kernel.find_halfedge(OpenMesh::VertexHandle(static_cast<int>(from)),
-                                            OpenMesh::VertexHandle(static_cast<int>(to))))
-          .idx());
+  Halfedge spoke = grid.halfedges.outgoing(from);
+  while (grid.halfedges.to(spoke) != to) spoke = grid.halfedges.turned(spoke);
+  return grid.halfedges.edge(spoke);
 }
 
 //  30 31 32 33 34 35      every square is cut from lower left to upper right

@@ -133,13 +133,12 @@ UnitSet AieScheme::find_units(const Surface& surface) const {
     std::uint32_t anchor;
     EdgeNeighbourhood around;
   };
-  const auto found = parallel_collect<Found>(surface.halfedges.kernel.n_edges() * kAlternatives,
-                                             [&](std::size_t i, std::vector<Found>& out) {
-                                               const auto anchor = static_cast<std::uint32_t>(i);
-                                               const std::optional<Site> site =
-                                                   site_at(surface, anchor);
-                                               if (site) out.push_back({anchor, site->around});
-                                             });
+  const auto found = parallel_collect<Found>(
+      surface.halfedges.edge_count() * kAlternatives, [&](std::size_t i, std::vector<Found>& out) {
+        const auto anchor = static_cast<std::uint32_t>(i);
+        const std::optional<Site> site = site_at(surface, anchor);
+        if (site) out.push_back({anchor, site->around});
+      });
   UnitSet units;
   units.anchors.reserve(found.size());
   for (const Found& unit : found) {
@@ -308,7 +307,7 @@ std::vector<Reading> AieScheme::read(const Surface& surface) const {
     if (first) out.push_back(first->reading);
     if (second) out.push_back(second->reading);
   };
-  return parallel_collect<Reading>(surface.halfedges.kernel.n_edges(), read_edge);
+  return parallel_collect<Reading>(surface.halfedges.edge_count(), read_edge);
 }
 
 PointLists AieScheme::points_of(const Surface& surface,
@@ -316,7 +315,7 @@ PointLists AieScheme::points_of(const Surface& surface,
   PointLists lists;
   for (const std::uint32_t anchor : anchors) {
     std::vector<std::uint32_t> points;
-    if (anchor / kAlternatives < surface.halfedges.kernel.n_edges()) {
+    if (anchor / kAlternatives < surface.halfedges.edge_count()) {
       const auto around = neighbourhood_of(surface, anchor / kAlternatives, false, rule_of(anchor));
       if (around) {
         points.assign(around->basis.begin(), around->basis.end());

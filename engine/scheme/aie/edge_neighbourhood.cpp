@@ -5,9 +5,6 @@
 namespace triglyph {
 namespace {
 
-using Kernel = OpenMesh::TriConnectivity;
-using Halfedge = OpenMesh::HalfedgeHandle;
-
 // The points around one basis point, counter-clockwise.
 struct Ring {
   std::array<std::uint32_t, EdgeNeighbourhood::kMaxPoints> points{};
@@ -23,13 +20,13 @@ struct Ring {
 
 // Nothing at a boundary or if the ring is too long.
 std::optional<Ring> ring_from(const Surface& surface, Halfedge first) {
-  const Kernel& kernel = surface.halfedges.kernel;
+  const Halfedges& halfedges = surface.halfedges;
   Ring ring;
   Halfedge spoke = first;
   do {
-    if (kernel.is_boundary(spoke) || ring.size == ring.points.size()) return std::nullopt;
-    ring.points[ring.size++] = surface.halfedges.point(kernel.to_vertex_handle(spoke));
-    spoke = kernel.opposite_halfedge_handle(kernel.prev_halfedge_handle(spoke));
+    if (halfedges.is_boundary(spoke) || ring.size == ring.points.size()) return std::nullopt;
+    ring.points[ring.size++] = halfedges.to(spoke);
+    spoke = halfedges.turned(spoke);
   } while (spoke != first);
   return ring;
 }
@@ -42,22 +39,21 @@ struct Frame {
                                    // c's, d's outer apex
 };
 
-Frame frame_of(const Kernel& kernel, std::uint32_t edge, bool reversed) {
-  const auto handle = OpenMesh::EdgeHandle(static_cast<int>(edge));
-  const Halfedge along = kernel.halfedge_handle(handle, reversed ? 1 : 0);
-  const Halfedge back = kernel.opposite_halfedge_handle(along);
-  const Halfedge from_c = kernel.prev_halfedge_handle(along);
-  const Halfedge from_d = kernel.prev_halfedge_handle(back);
+Frame frame_of(const Halfedges& halfedges, std::uint32_t edge, bool reversed) {
+  const Halfedge along = halfedges.of_edge(edge, reversed ? 1 : 0);
+  const Halfedge back = halfedges.opposite(along);
+  const Halfedge from_c = halfedges.previous(along);
+  const Halfedge from_d = halfedges.previous(back);
   return {along,
           {along, back, from_c, from_d},
-          {from_c, from_d, kernel.next_halfedge_handle(along), kernel.next_halfedge_handle(back)}};
+          {from_c, from_d, halfedges.next(along), halfedges.next(back)}};
 }
 
 std::optional<std::uint32_t> apex_behind(const Surface& surface, Halfedge side) {
-  const Kernel& kernel = surface.halfedges.kernel;
-  const Halfedge across = kernel.opposite_halfedge_handle(side);
-  if (kernel.is_boundary(across)) return std::nullopt;
-  return surface.halfedges.point(kernel.to_vertex_handle(kernel.next_halfedge_handle(across)));
+  const Halfedges& halfedges = surface.halfedges;
+  const Halfedge across = halfedges.opposite(side);
+  if (halfedges.is_boundary(across)) return std::nullopt;
+  return halfedges.to(halfedges.next(across));
 }
 
 bool all_different(std::span<const std::uint32_t> points) {
@@ -70,13 +66,13 @@ bool all_different(std::span<const std::uint32_t> points) {
 }
 
 std::optional<std::array<std::uint32_t, 4>> basis_in(const Surface& surface, const Frame& frame) {
-  const Kernel& kernel = surface.halfedges.kernel;
-  if (kernel.is_boundary(frame.spokes[0]) || kernel.is_boundary(frame.spokes[1])) {
+  const Halfedges& halfedges = surface.halfedges;
+  if (halfedges.is_boundary(frame.spokes[0]) || halfedges.is_boundary(frame.spokes[1])) {
     return std::nullopt;
   }
   std::array<std::uint32_t, 4> basis{};
   for (std::size_t i = 0; i < 4; ++i) {
-    basis[i] = surface.halfedges.point(kernel.from_vertex_handle(frame.spokes[i]));
+    basis[i] = halfedges.from(frame.spokes[i]);
   }
   if (!all_different(basis)) return std::nullopt;
   return basis;
@@ -153,12 +149,12 @@ class Grouping {
 
 std::optional<std::array<std::uint32_t, 4>> basis_of(const Surface& surface, std::uint32_t edge,
                                                      bool reversed) {
-  return basis_in(surface, frame_of(surface.halfedges.kernel, edge, reversed));
+  return basis_in(surface, frame_of(surface.halfedges, edge, reversed));
 }
 
 std::optional<EdgeNeighbourhood> neighbourhood_of(const Surface& surface, std::uint32_t edge,
                                                   bool reversed, GroupRule rule) {
-  const Frame frame = frame_of(surface.halfedges.kernel, edge, reversed);
+  const Frame frame = frame_of(surface.halfedges, edge, reversed);
   const auto basis = basis_in(surface, frame);
   if (!basis) return std::nullopt;
   EdgeNeighbourhood result;

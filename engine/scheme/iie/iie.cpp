@@ -156,12 +156,12 @@ struct IieScheme::Ground {
         most_triangles(most_triangles_in(radius, mean_edge_length(on.mesh))),
         index(on.mesh.positions, on.mesh.triangles),
         unfit(on.mesh.triangles.size(), 0) {
-    const auto& kernel = surface.halfedges.kernel;
-    for (std::size_t t = 0; t < unfit.size(); ++t) {
-      auto side = kernel.halfedge_handle(OpenMesh::FaceHandle(static_cast<int>(t)));
+    const Halfedges& halfedges = surface.halfedges;
+    for (std::uint32_t t = 0; t < unfit.size(); ++t) {
+      Halfedge side = halfedges.first_of_face(t);
       for (int i = 0; i < 3; ++i) {
-        if (kernel.is_boundary(kernel.opposite_halfedge_handle(side))) unfit[t] = 1;
-        side = kernel.next_halfedge_handle(side);
+        if (halfedges.is_boundary(halfedges.opposite(side))) unfit[t] = 1;
+        side = halfedges.next(side);
       }
     }
     find_sites(options.site_rings, seed);

@@ -35,17 +35,16 @@ std::uint32_t longest_side(const Mesh& mesh, std::uint32_t face) {
 // scheme reads them; nothing at a boundary or where they are not six.
 std::optional<Quadruple> quadruple_of(const Surface& surface, std::uint32_t face,
                                       std::uint32_t base) {
-  const auto& kernel = surface.halfedges.kernel;
+  const Halfedges& halfedges = surface.halfedges;
   const Triangle& triangle = surface.mesh.triangles[face];
   Quadruple points{triangle[base], triangle[(base + 1) % 3], triangle[(base + 2) % 3], 0, 0, 0};
-  auto side = kernel.halfedge_handle(OpenMesh::FaceHandle(static_cast<int>(face)));
-  for (std::uint32_t i = 0; i < base; ++i) side = kernel.next_halfedge_handle(side);
+  Halfedge side = halfedges.first_of_face(face);
+  for (std::uint32_t i = 0; i < base; ++i) side = halfedges.next(side);
   for (std::size_t i = 3; i < 6; ++i) {
-    const auto across = kernel.opposite_halfedge_handle(side);
-    if (kernel.is_boundary(across)) return std::nullopt;
-    points[i] =
-        surface.halfedges.point(kernel.to_vertex_handle(kernel.next_halfedge_handle(across)));
-    side = kernel.next_halfedge_handle(side);
+    const Halfedge across = halfedges.opposite(side);
+    if (halfedges.is_boundary(across)) return std::nullopt;
+    points[i] = halfedges.to(halfedges.next(across));
+    side = halfedges.next(side);
   }
   // the apexes differ from M's corners by construction unless two faces share all their points
   for (std::size_t i = 3; i < 6; ++i) {
