@@ -129,8 +129,8 @@ void read_back(Task& task, const Key& key) noexcept {
     const WordCode code(key, record.format);
     const auto scheme = make_scheme(record.options.scheme, code, record.options.scheme_options);
     const Readable written(task.output->temporary_path());
-    const Extraction found =
-        extract(written.surface(), *scheme, code, record.options.scheme_options.doubtful_parts);
+    const Extraction found = extract(*scheme->bind(written.surface()), code,
+                                     record.options.scheme_options.doubtful_parts);
     std::vector<Carrier> embedded =
         carriers_read(task.marking.carriers, task.marking.words, found.readings);
     record.units_embedded = static_cast<std::uint32_t>(embedded.size());
@@ -178,7 +178,7 @@ FileExtraction extract_file(const std::filesystem::path& path, const Key& key,
   const Readable readable(path);
   const WordCode code(key, options.format);
   const auto scheme = make_scheme(options.scheme, code, options.scheme_options);
-  return {extract(readable.surface(), *scheme, code, options.scheme_options.doubtful_parts),
+  return {extract(*scheme->bind(readable.surface()), code, options.scheme_options.doubtful_parts),
           readable.file.vertex_count(), readable.file.face_count()};
 }
 

@@ -47,7 +47,7 @@ std::vector<std::uint64_t> vertices_of(const MeshFile& file, const PointLists& l
 
 // Anchors are numbers of the mesh as it was written: nothing if it is numbered otherwise now.
 std::optional<Damage> damage_of(const RecordedMark& recorded, const Readable& readable,
-                                const Scheme& scheme, std::span<const Word> words,
+                                const BoundScheme& scheme, std::span<const Word> words,
                                 std::span<const Reading> readings, std::uint32_t units_found,
                                 bool locate) {
   const bool same_size = readable.file.mesh().positions.size() == recorded.points &&
@@ -60,7 +60,7 @@ std::optional<Damage> damage_of(const RecordedMark& recorded, const Readable& re
   damage.units_expected = static_cast<std::uint32_t>(recorded.units->size());
   damage.units_damaged = static_cast<std::uint32_t>(damaged.size());
   if (locate && !damaged.empty()) {
-    damage.vertices = vertices_of(readable.file, scheme.points_of(readable.surface(), damaged));
+    damage.vertices = vertices_of(readable.file, scheme.points_of(damaged));
   }
   return damage;
 }
@@ -100,8 +100,8 @@ Verification verify_file(const RecordedMark& recorded, const Key& key, bool loca
     const Readable readable(recorded.out);
     const WordCode code(key, recorded.options.format);
     const auto scheme = make_scheme(recorded.options.scheme, code, recorded.options.scheme_options);
-    const Extraction found =
-        extract(readable.surface(), *scheme, code, recorded.options.scheme_options.doubtful_parts);
+    const auto bound = scheme->bind(readable.surface());
+    const Extraction found = extract(*bound, code, recorded.options.scheme_options.doubtful_parts);
     const std::vector<Word> words =
         recorded.fill ? code.fill_words(recorded.parts) : code.words_of(recorded.message);
     result.units_found = count_words(code, words, found.readings);
@@ -110,7 +110,7 @@ Verification verify_file(const RecordedMark& recorded, const Key& key, bool loca
     const bool right_key = recorded.key_fingerprint == key.fingerprint();
     if (right_key) {
       result.damage =
-          damage_of(recorded, readable, *scheme, words, found.readings, result.units_found, locate);
+          damage_of(recorded, readable, *bound, words, found.readings, result.units_found, locate);
     }
     if (result.damage) {
       result.units_found = result.damage->units_expected - result.damage->units_damaged;

@@ -101,8 +101,8 @@ class Subject {
     for (std::uint64_t seed = 0; seed < kTrials; ++seed) {
       const Mesh attacked = as_float(attack(marked_, seed));
       const Halfedges halfedges = build_halfedges(attacked);
-      const Extraction found =
-          extract({attacked, halfedges}, *scheme_, code_, options_.scheme_options.doubtful_parts);
+      const Extraction found = extract(*scheme_->bind({attacked, halfedges}), code_,
+                                       options_.scheme_options.doubtful_parts);
       count += found.message == message_ ? 1 : 0;
     }
     return count;

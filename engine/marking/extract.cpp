@@ -6,10 +6,9 @@
 
 namespace triglyph {
 
-Extraction extract(const Surface& surface, const Scheme& scheme, const WordCode& code,
-                   int doubtful_parts) {
+Extraction extract(const BoundScheme& scheme, const WordCode& code, int doubtful_parts) {
   Extraction result;
-  result.readings = scheme.read(surface);
+  result.readings = scheme.read();
   Votes votes(code);
   for (const Reading& reading : result.readings) votes.add(reading);
   Decoded decoded = decode(votes, code, doubtful_parts);

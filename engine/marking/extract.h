@@ -22,7 +22,7 @@ struct Extraction {
 };
 
 // O(triangles).
-[[nodiscard]] Extraction extract(const Surface& surface, const Scheme& scheme, const WordCode& code,
+[[nodiscard]] Extraction extract(const BoundScheme& scheme, const WordCode& code,
                                  int doubtful_parts = 0);
 
 }  // namespace triglyph

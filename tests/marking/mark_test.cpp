@@ -36,8 +36,8 @@ Mesh marked_ball(const MarkOptions& options = {}) {
 Extraction read(const Mesh& mesh, const Key& key = Key::trial(), const MarkOptions& options = {}) {
   const test::Solid solid(mesh);
   const WordCode code(key, options.format);
-  return extract(solid.surface(), *make_scheme(options.scheme, code, options.scheme_options), code,
-                 options.scheme_options.doubtful_parts);
+  return extract(*make_scheme(options.scheme, code, options.scheme_options)->bind(solid.surface()),
+                 code, options.scheme_options.doubtful_parts);
 }
 
 TEST(Mark, MessageComesBackAndEveryCarrierAgrees) {

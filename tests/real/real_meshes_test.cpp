@@ -98,7 +98,7 @@ TEST(RealMeshes, MarkedBunnySurvivesWhatItShould) {
   const auto scheme = make_scheme("tsq", code, {});
   const auto message_in = [&](const Mesh& mesh) {
     const test::Solid solid(mesh);
-    return extract(solid.surface(), *scheme, code).message;
+    return extract(*scheme->bind(solid.surface()), code).message;
   };
   EXPECT_EQ(message_in(marked), settings.message);
   EXPECT_EQ(message_in(test::with_significant_digits(marked, 6)), settings.message);
@@ -138,7 +138,7 @@ void expect_affine_survival(const fs::path& mesh, AieGroups groups) {
     for (Vec3& p : attacked.positions) p = test::as_float(p);
     const test::Solid solid(attacked);
     const WordCode code(key, options.format);
-    return extract(solid.surface(), *make_scheme("aie", code, options.scheme_options), code)
+    return extract(*make_scheme("aie", code, options.scheme_options)->bind(solid.surface()), code)
         .message;
   };
   EXPECT_FALSE(message_in(MeshFile::open(mesh).mesh()));
@@ -182,7 +182,8 @@ void expect_noise_survival(const fs::path& mesh, double intensity, int bits) {
     const test::Solid solid(attacked);
     const WordCode code(key, options.format);
     const auto scheme = make_scheme("iie", code, options.scheme_options);
-    return extract(solid.surface(), *scheme, code, options.scheme_options.doubtful_parts).message;
+    return extract(*scheme->bind(solid.surface()), code, options.scheme_options.doubtful_parts)
+        .message;
   };
   EXPECT_EQ(message_in(marked), settings.message);
   EXPECT_FALSE(message_in(MeshFile::open(mesh).mesh()));

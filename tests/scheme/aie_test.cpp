@@ -33,7 +33,7 @@ Mesh marked_ball(const MarkOptions& options) {
 std::optional<Message> read(const Mesh& mesh, const MarkOptions& options) {
   const test::Solid solid(mesh);
   const WordCode code(Key::trial(), options.format);
-  return extract(solid.surface(), AieScheme(code, options.scheme_options), code).message;
+  return extract(*AieScheme(code, options.scheme_options).bind(solid.surface()), code).message;
 }
 
 // Interior edge of a grid whose points are all of valence six.
@@ -97,7 +97,7 @@ TEST(Aie, BasesMayBeSharedButAreNeverMoved) {
   const auto& ball = test::bumpy_ball();
   const MarkOptions options = options_with(AieGroups::One);
   const AieScheme scheme(WordCode(Key::trial(), options.format), options.scheme_options);
-  const UnitSet units = scheme.find_units(ball.surface());
+  const UnitSet units = scheme.bind(ball.surface())->find_units();
   for (std::size_t i = 0; i < units.size(); ++i) {
     EXPECT_EQ(units.moved[i].size(), 4U);
     EXPECT_EQ(units.read[i].size(), 8U);
@@ -143,7 +143,7 @@ TEST(Aie, NoUnitIsReadTwice) {
         mark(ball.surface(), kMessage, Key::trial(), options, test::as_float, 1e-7);
     const Mesh marked{marking.positions, ball.mesh.triangles};
     const Extraction found =
-        extract({marked, ball.halfedges}, AieScheme(code, options.scheme_options), code);
+        extract(*AieScheme(code, options.scheme_options).bind({marked, ball.halfedges}), code);
     EXPECT_GE(found.agreeing, marking.carriers.size());
     EXPECT_LE(found.agreeing, marking.carriers.size() * 21 / 20);  // some by chance
   }
@@ -164,7 +164,7 @@ TEST(Aie, AllNeighboursOutliveDamageThatOneDoesNot) {
       const bool carries = marking.positions[i] != ball.mesh.positions[i];
       if (carries && random_unit(3, i, 0) < 0.1) damaged.positions[i] *= 1.002;
     }
-    const Extraction found = extract({damaged, ball.halfedges}, scheme, code);
+    const Extraction found = extract(*scheme.bind({damaged, ball.halfedges}), code);
     EXPECT_EQ(found.message, kMessage);
     return static_cast<double>(found.agreeing) / static_cast<double>(marking.carriers.size());
   };

@@ -30,7 +30,7 @@ struct Marked {
 
   [[nodiscard]] Extraction read(const Mesh& other) const {
     const test::Solid solid(other);
-    return extract(solid.surface(), scheme, code, options.scheme_options.doubtful_parts);
+    return extract(*scheme.bind(solid.surface()), code, options.scheme_options.doubtful_parts);
   }
 };
 
@@ -93,7 +93,7 @@ TEST(Iie, MovesOnlyWhatNoOtherUnitReads) {
   const auto& ball = test::bumpy_ball();
   const SchemeDefaults defaults = IieScheme::defaults();
   const IieScheme scheme(WordCode(Key::trial(), defaults.fill_format), defaults.fill_options);
-  const UnitSet units = scheme.find_units(ball.surface());
+  const UnitSet units = scheme.bind(ball.surface())->find_units();
   const auto valid = choose_layout(Conflicts(units.moved, units.read_or_moved(),
                                              ball.mesh.positions.size(), ConflictRule::ReadWrite),
                                    {});

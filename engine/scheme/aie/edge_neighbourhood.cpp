@@ -18,17 +18,15 @@ struct Ring {
   }
 };
 
-// Nothing at a boundary or if the ring is too long.
-std::optional<Ring> ring_from(const Surface& surface, Halfedge first) {
-  const Halfedges& halfedges = surface.halfedges;
-  Ring ring;
+// Fills an empty ring. False at a boundary or if the ring is too long.
+bool walk_ring(const Halfedges& halfedges, Halfedge first, Ring& ring) {
   Halfedge spoke = first;
   do {
-    if (halfedges.is_boundary(spoke) || ring.size == ring.points.size()) return std::nullopt;
+    if (halfedges.is_boundary(spoke) || ring.size == ring.points.size()) return false;
     ring.points[ring.size++] = halfedges.to(spoke);
     spoke = halfedges.turned(spoke);
   } while (spoke != first);
-  return ring;
+  return true;
 }
 
 // The halfedge a -> b and the spokes from which the rings of a, b, c, d are walked.
@@ -84,11 +82,12 @@ class Grouping {
   Grouping(const Surface& surface, const Frame& frame, EdgeNeighbourhood& result)
       : surface_(surface), frame_(frame), result_(result) {}
 
-  [[nodiscard]] bool collect(GroupRule rule) {
+  [[nodiscard]] bool collect(GroupRule rule, const GroupVisit& visit) {
     if (rule != GroupRule::OuterApexes && !walk_rings()) return false;
     for (std::size_t k = 0; k < 4; ++k) {
       result_.ends[k + 1] = result_.ends[k];
       if (!collect_group(rule, k) || result_.ends[k + 1] == result_.ends[k]) return false;
+      if (visit && !visit(k, result_.group(k))) return false;
     }
     std::array<std::uint32_t, EdgeNeighbourhood::kMaxPoints + 4> all{};
     const auto groups = result_.all_groups();
@@ -100,9 +99,7 @@ class Grouping {
  private:
   bool walk_rings() {
     for (std::size_t k = 0; k < 4; ++k) {
-      const std::optional<Ring> ring = ring_from(surface_, frame_.spokes[k]);
-      if (!ring) return false;
-      rings_[k] = *ring;
+      if (!walk_ring(surface_.halfedges, frame_.spokes[k], rings_[k])) return false;
     }
     return true;
   }
@@ -153,13 +150,14 @@ std::optional<std::array<std::uint32_t, 4>> basis_of(const Surface& surface, std
 }
 
 std::optional<EdgeNeighbourhood> neighbourhood_of(const Surface& surface, std::uint32_t edge,
-                                                  bool reversed, GroupRule rule) {
+                                                  bool reversed, GroupRule rule,
+                                                  const GroupVisit& visit) {
   const Frame frame = frame_of(surface.halfedges, edge, reversed);
   const auto basis = basis_in(surface, frame);
   if (!basis) return std::nullopt;
   EdgeNeighbourhood result;
   result.basis = *basis;
-  if (!Grouping(surface, frame, result).collect(rule)) return std::nullopt;
+  if (!Grouping(surface, frame, result).collect(rule, visit)) return std::nullopt;
   return result;
 }
 
