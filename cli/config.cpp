@@ -35,13 +35,13 @@ class StrictConfig final : public CLI::ConfigTOML {
                            std::istreambuf_iterator<char>()};
     const Lines lines = lines_of(text);
     std::istringstream copy(text);
-    std::vector<CLI::ConfigItem> items = ConfigBase::from_config(copy);
-    for (CLI::ConfigItem& item : items) {
+    std::vector<CLI::ConfigItem> found = ConfigBase::from_config(copy);
+    for (CLI::ConfigItem& item : found) {
       if (item.name == "++" || item.name == "--") continue;  // a section begins or ends
       item.name = with(item.name, '_', '-');
       check(item, lines);
     }
-    return items;
+    return found;
   }
 
  private:

@@ -130,7 +130,8 @@ class PaperFigure {
     }
     const auto scheme = make_scheme(mark_options_.scheme, WordCode(Key::trial(), marking.format),
                                     mark_options_.scheme_options);
-    scene.face_colours = facets_of_units(after, scheme->points_of({after, halfedges_}, anchors));
+    scene.face_colours =
+        facets_of_units(after, scheme->bind({after, halfedges_})->points_of(anchors));
   }
 
   // The mean of an anchor and its one-ring.

@@ -19,6 +19,7 @@ struct Subject {
   Halfedges halfedges;
   MarkOptions options;
   std::unique_ptr<Scheme> scheme;
+  std::unique_ptr<BoundScheme> bound;
   UnitSet units;
 
   explicit Subject(std::size_t triangles, const std::string& name = "tsq")
@@ -26,7 +27,8 @@ struct Subject {
         halfedges(build_halfedges(mesh)),
         options(default_mark_options(name, false)),
         scheme(make_scheme(name, WordCode(Key::trial(), options.format), options.scheme_options)),
-        units(scheme->find_units(surface())) {}
+        bound(scheme->bind(surface())),
+        units(bound->find_units()) {}
   [[nodiscard]] Surface surface() const { return {mesh, halfedges}; }
 };
 
@@ -43,7 +45,8 @@ void BM_Halfedges(benchmark::State& state) {
 
 void BM_FindUnits(benchmark::State& state, const std::string& scheme) {
   const Subject subject(static_cast<std::size_t>(state.range(0)), scheme);
-  for (auto _ : state) benchmark::DoNotOptimize(subject.scheme->find_units(subject.surface()));
+  for (auto _ : state)
+    benchmark::DoNotOptimize(subject.scheme->bind(subject.surface())->find_units());
   count_triangles(state, subject.mesh);
 }
 
@@ -61,7 +64,7 @@ void BM_Layout(benchmark::State& state, LayoutMethod method) {
 
 void BM_Read(benchmark::State& state, const std::string& scheme) {
   const Subject subject(static_cast<std::size_t>(state.range(0)), scheme);
-  for (auto _ : state) benchmark::DoNotOptimize(subject.scheme->read(subject.surface()));
+  for (auto _ : state) benchmark::DoNotOptimize(subject.scheme->bind(subject.surface())->read());
   count_triangles(state, subject.mesh);
 }
 
@@ -76,7 +79,8 @@ void BM_InvariantsOfBunny(benchmark::State& state) {
   const std::vector<char> unfit(mesh.triangles.size(), 0);
   const double radius = 4 * mean_edge_length(mesh);
   for (auto _ : state) {
-    benchmark::DoNotOptimize(all_ball_invariants(mesh.positions, mesh.triangles, unfit,
+    const SpatialIndex index(mesh.positions, mesh.triangles);
+    benchmark::DoNotOptimize(all_ball_invariants(mesh.positions, mesh.triangles, index, unfit,
                                                  mesh.positions, radius, mesh.triangles.size()));
   }
   state.counters["balls/s"] = benchmark::Counter(static_cast<double>(mesh.positions.size()),

@@ -102,8 +102,8 @@ class Subject {
     for (std::uint64_t seed = 0; seed < kTrials; ++seed) {
       const Mesh attacked = as_float(attack(marked_, seed));
       const Halfedges halfedges = build_halfedges(attacked);
-      const Extraction found =
-          extract({attacked, halfedges}, *scheme_, code_, doubtful_parts(options_.scheme_options));
+      const Extraction found = extract(*scheme_->bind({attacked, halfedges}), code_,
+                                       doubtful_parts(options_.scheme_options));
       count += found.message == message_ ? 1 : 0;
     }
     return count;

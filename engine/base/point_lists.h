@@ -17,6 +17,13 @@ struct PointLists {
     points.insert(points.end(), list.begin(), list.end());
     offsets.push_back(static_cast<std::uint32_t>(points.size()));
   }
+  void append(const PointLists& lists) {
+    const auto shift = static_cast<std::uint32_t>(points.size());
+    points.insert(points.end(), lists.points.begin(), lists.points.end());
+    for (std::size_t i = 1; i < lists.offsets.size(); ++i) {
+      offsets.push_back(shift + lists.offsets[i]);
+    }
+  }
   [[nodiscard]] std::span<const std::uint32_t> operator[](std::size_t i) const {
     return {points.data() + offsets[i], points.data() + offsets[i + 1]};
   }

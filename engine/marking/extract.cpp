@@ -7,10 +7,9 @@
 
 namespace triglyph {
 
-Extraction extract(const Surface& surface, const Scheme& scheme, const WordCode& code,
-                   int doubtful_parts) {
+Extraction extract(const BoundScheme& scheme, const WordCode& code, int doubtful_parts) {
   Extraction result;
-  result.readings = scheme.read(surface);
+  result.readings = scheme.read();
   Votes votes(code);
   for (const Reading& reading : result.readings) votes.add(reading);
   Decoded decoded = decode(votes, code, doubtful_parts);
@@ -34,7 +33,7 @@ Extraction extract(const Surface& surface, const Scheme& scheme, const WordCode&
 Extraction extract(const Surface& surface, const Encoding& encoding, const Key& key) {
   const WordCode code(key, encoding.format);
   const auto scheme = make_scheme(encoding.scheme, code, encoding.scheme_options);
-  return extract(surface, *scheme, code, doubtful_parts(encoding.scheme_options));
+  return extract(*scheme->bind(surface), code, doubtful_parts(encoding.scheme_options));
 }
 
 }  // namespace triglyph

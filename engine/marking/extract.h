@@ -24,7 +24,7 @@ struct Extraction {
 };
 
 // O(triangles).
-[[nodiscard]] Extraction extract(const Surface& surface, const Scheme& scheme, const WordCode& code,
+[[nodiscard]] Extraction extract(const BoundScheme& scheme, const WordCode& code,
                                  int doubtful_parts = 0);
 
 // The same with the scheme and the word format of an encoding. Throws Error Usage for one that

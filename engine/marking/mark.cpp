@@ -10,7 +10,6 @@
 #include "engine/marking/plan_words.h"
 #include "engine/marking/select_units.h"
 #include "engine/marking/settle.h"
-#include "engine/mesh/edge_length.h"
 #include "engine/scheme/registry.h"
 
 namespace triglyph {
@@ -18,6 +17,10 @@ namespace {
 
 // How often words that could not be embedded are dealt out anew before the mesh is taken as it is.
 constexpr int kMaxRounds = 16;
+
+// Share of a cell from which on a distance between the output's numbers explains that most units
+// were lost: rounding a unit's points by half of it, several at a time, leaves no margin.
+constexpr double kCoarseStep = 0.05;
 
 // As many as tell the units apart, at most those the options allow.
 int fill_subscript_bits(std::size_t units, const WordFormat& format) {
@@ -87,7 +90,9 @@ Marking mark(const Surface& surface, std::span<const std::uint8_t> message, cons
   Stopwatch watch;
   const std::vector<Word> words =
       fill ? first_code.fill_words(std::min(kProbeWords, first_code.capacity())) : marking.words;
-  const Capacity capacity = find_capacity(surface, *scheme_for(first_code), words, options);
+  auto scheme = scheme_for(first_code);
+  auto bound = scheme->bind(surface);
+  const Capacity capacity = find_capacity(surface, *bound, words, options);
   const UnitSet& units = capacity.units;
   const std::vector<std::uint32_t>& valid = capacity.valid;
   marking.layout_seconds = watch.lap();
@@ -109,10 +114,14 @@ Marking mark(const Surface& surface, std::span<const std::uint8_t> message, cons
   }
 
   // step 2: which word each unit carries; what proves impossible is dealt out anew
-  const auto scheme = scheme_for(code);
+  if (marking.format != options.format) {
+    bound.reset();
+    scheme = scheme_for(code);
+    bound = scheme->bind(surface);
+  }
   const double limit =
       fill ? 0 : options.max_move_percent / 100 * box_diagonal(surface.mesh.positions);
-  WordAssigner assigner(surface, *scheme, units, valid, marking.words, options, limit);
+  WordAssigner assigner(*bound, units, valid, marking.words, options, limit);
   const bool once = fill || options.assign == AssignMethod::Sequential;
   for (int round = 0; round < (once ? 1 : kMaxRounds); ++round) {
     watch.lap();
@@ -121,7 +130,7 @@ Marking mark(const Surface& surface, std::span<const std::uint8_t> message, cons
     marking.cost_max = plan.cost_max;
     marking.cost_sum = plan.cost_sum;
     marking.units_assigned = static_cast<std::uint32_t>(plan.placements.size());
-    settle(surface, *scheme, units, plan.placements, rounding, marking);
+    settle(surface, *bound, units, plan.placements, rounding, marking);
     const std::vector<Placement> missed = sorely_missed(plan.placements, units, marking);
     if (missed.empty()) break;
     for (const Placement& placement : missed) assigner.rule_out(placement);
@@ -129,8 +138,8 @@ Marking mark(const Surface& surface, std::span<const std::uint8_t> message, cons
   marking.parts_carried = count_parts(marking);
   if (!fill && marking.parts_carried < marking.words.size()) marking.status = MarkStatus::TooSmall;
   const bool mostly_lost = 2 * marking.units_dropped > marking.units_assigned;
-  const double cell = number_in(options.scheme_options, "step", 0) * mean_edge_length(surface.mesh);
-  if (mostly_lost && number_step > 0.05 * cell) marking.status = MarkStatus::TooCoarse;
+  const bool is_coarse = number_step > kCoarseStep * bound->cell_size();
+  if (mostly_lost && is_coarse) marking.status = MarkStatus::TooCoarse;
   return marking;
 }
 

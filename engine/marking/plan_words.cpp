@@ -42,11 +42,10 @@ std::vector<std::uint32_t> share_demand(std::size_t units, std::size_t parts,
 
 }  // namespace
 
-WordAssigner::WordAssigner(const Surface& surface, const Scheme& scheme, const UnitSet& units,
+WordAssigner::WordAssigner(const BoundScheme& scheme, const UnitSet& units,
                            std::span<const std::uint32_t> valid, std::span<const Word> words,
                            const MarkOptions& options, double max_cost)
-    : surface_(surface),
-      scheme_(scheme),
+    : scheme_(scheme),
       units_(units),
       valid_(valid),
       words_(words),
@@ -108,7 +107,7 @@ std::vector<std::uint32_t> WordAssigner::block_units(std::size_t block) const {
 const CostMatrix& WordAssigner::block_costs(std::size_t block,
                                             std::span<const std::uint32_t> chosen) {
   if (costs_of_block_ != block) {
-    costs_ = scheme_.costs(surface_, units_, chosen, words_);
+    costs_ = scheme_.costs(units_, chosen, words_);
     costs_of_block_ = block;
     const auto visible = static_cast<float>(kVisibleMove * max_cost_);
     if (is_limited()) {

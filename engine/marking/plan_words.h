@@ -28,7 +28,7 @@ struct WordPlan {
 class WordAssigner {
  public:
   // All references must outlive the assigner. `max_cost`: model units; 0: any.
-  WordAssigner(const Surface& surface, const Scheme& scheme, const UnitSet& units,
+  WordAssigner(const BoundScheme& scheme, const UnitSet& units,
                std::span<const std::uint32_t> valid, std::span<const Word> words,
                const MarkOptions& options, double max_cost);
 
@@ -49,8 +49,7 @@ class WordAssigner {
   [[nodiscard]] const CostMatrix& block_costs(std::size_t block,
                                               std::span<const std::uint32_t> chosen);
 
-  const Surface& surface_;
-  const Scheme& scheme_;
+  const BoundScheme& scheme_;
   const UnitSet& units_;
   std::span<const std::uint32_t> valid_;
   std::span<const Word> words_;

@@ -9,14 +9,14 @@ namespace triglyph {
 namespace {
 
 // The least cost of every unit under some words that stand for all.
-std::vector<float> cheapest_costs(const Surface& surface, const Scheme& scheme,
-                                  const UnitSet& units, std::span<const Word> words) {
+std::vector<float> cheapest_costs(const BoundScheme& scheme, const UnitSet& units,
+                                  std::span<const Word> words) {
   std::vector<Word> probes;
   const std::size_t step = (words.size() + kProbeWords - 1) / kProbeWords;
   for (std::size_t i = 0; i < words.size(); i += step) probes.push_back(words[i]);
   std::vector<std::uint32_t> all(units.size());
   std::iota(all.begin(), all.end(), 0U);
-  const CostMatrix costs = scheme.costs(surface, units, all, probes);
+  const CostMatrix costs = scheme.costs(units, all, probes);
   std::vector<float> cheapest(units.size(), kInfeasible);
   for (std::uint32_t word = 0; word < costs.words; ++word) {
     const auto column = costs.column(word);
@@ -46,17 +46,17 @@ UnitSet without_dearest(const UnitSet& units, const std::vector<float>& costs, d
 
 }  // namespace
 
-Capacity find_capacity(const Surface& surface, const Scheme& scheme, std::span<const Word> words,
-                       const MarkOptions& options) {
+Capacity find_capacity(const Surface& surface, const BoundScheme& scheme,
+                       std::span<const Word> words, const MarkOptions& options) {
   const double dropped = options.drop_dearest_percent / 100;
   if (!(dropped >= 0 && dropped < 1)) {
     throw Error(ErrorCode::Usage, {}, "",
                 "the share of candidates left out is 0 to below 100 percent");
   }
   Capacity capacity;
-  capacity.units = scheme.find_units(surface);
+  capacity.units = scheme.find_units();
   if (dropped > 0 && capacity.units.size() > 0) {
-    const std::vector<float> costs = cheapest_costs(surface, scheme, capacity.units, words);
+    const std::vector<float> costs = cheapest_costs(scheme, capacity.units, words);
     capacity.units = without_dearest(capacity.units, costs, dropped);
   }
   const Conflicts conflicts(capacity.units.moved, capacity.units.read_or_moved(),

@@ -20,8 +20,9 @@ struct Capacity {
 };
 
 // `words`: those that are to be hidden, or some like them; used only to leave out dear candidates.
-// Throws Error Usage if MarkOptions::drop_dearest_percent lies outside 0 up to 100.
-[[nodiscard]] Capacity find_capacity(const Surface& surface, const Scheme& scheme,
+// `scheme` is bound to `surface`. Throws Error Usage if MarkOptions::drop_dearest_percent lies
+// outside 0 up to 100.
+[[nodiscard]] Capacity find_capacity(const Surface& surface, const BoundScheme& scheme,
                                      std::span<const Word> words, const MarkOptions& options);
 
 }  // namespace triglyph

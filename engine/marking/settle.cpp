@@ -84,9 +84,9 @@ std::vector<std::uint32_t> flipped_triangles(std::span<const Triangle> triangles
       });
 }
 
-void settle(const Surface& surface, const Scheme& scheme, const UnitSet& units,
+void settle(const Surface& surface, const BoundScheme& scheme, const UnitSet& units,
             std::span<const Placement> placements, const Rounding& round, Marking& marking) {
-  Embedding embedding = scheme.embed(surface, units, placements, marking.words);
+  Embedding embedding = scheme.embed(units, placements, marking.words);
   marking.positions = std::move(embedding.positions);
   marking.carriers.clear();
   Placed placed(surface, units, placements, marking.positions);
@@ -106,7 +106,7 @@ void settle(const Surface& surface, const Scheme& scheme, const UnitSet& units,
 
   // read what stands there now; readings and placements are both sorted by anchor
   const Mesh settled{marking.positions, surface.mesh.triangles};
-  const std::vector<Reading> readings = scheme.read({settled, surface.halfedges});
+  const std::vector<Reading> readings = scheme.moved_to({settled, surface.halfedges})->read();
   auto reading = readings.begin();
   for (std::uint32_t i = 0; i < placements.size(); ++i) {
     const std::uint32_t anchor = units.anchors[placements[i].unit];

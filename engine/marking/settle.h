@@ -14,8 +14,8 @@ namespace triglyph {
 
 // Embeds the placements, rounds what moved, and takes units back until no face is flipped and every
 // unit left reads its word with margin. Fills positions, carriers and units_dropped of `marking`,
-// whose words the placements index.
-void settle(const Surface& surface, const Scheme& scheme, const UnitSet& units,
+// whose words the placements index. `scheme` is bound to `surface`.
+void settle(const Surface& surface, const BoundScheme& scheme, const UnitSet& units,
             std::span<const Placement> placements, const Rounding& round, Marking& marking);
 
 }  // namespace triglyph

@@ -47,7 +47,7 @@ std::vector<std::uint64_t> vertices_of(const MeshFile& file, const PointLists& l
 
 // Anchors are numbers of the mesh as it was written: nothing if it is numbered otherwise now.
 std::optional<Damage> damage_of(const MarkedFile& marked, const Readable& readable,
-                                const Scheme& scheme, std::span<const Word> words,
+                                const BoundScheme& scheme, std::span<const Word> words,
                                 std::span<const Reading> readings, std::uint32_t units_found,
                                 bool locate) {
   const bool same_size = readable.file.mesh().positions.size() == marked.points &&
@@ -60,7 +60,7 @@ std::optional<Damage> damage_of(const MarkedFile& marked, const Readable& readab
   damage.units_expected = static_cast<std::uint32_t>(marked.units->size());
   damage.units_damaged = static_cast<std::uint32_t>(damaged.size());
   if (locate && !damaged.empty()) {
-    damage.vertices = vertices_of(readable.file, scheme.points_of(readable.surface(), damaged));
+    damage.vertices = vertices_of(readable.file, scheme.points_of(damaged));
   }
   return damage;
 }
@@ -101,8 +101,8 @@ Verification verify_file(const MarkedFile& marked, const Key& key, bool locate) 
     const Encoding encoding = marked.encoding();
     const WordCode code(key, encoding.format);
     const auto scheme = make_scheme(encoding.scheme, code, encoding.scheme_options);
-    const Extraction found =
-        extract(readable.surface(), *scheme, code, doubtful_parts(encoding.scheme_options));
+    const auto bound = scheme->bind(readable.surface());
+    const Extraction found = extract(*bound, code, doubtful_parts(encoding.scheme_options));
     const MarkRequest& request = marked.request;
     const std::vector<Word> words =
         request.fill ? code.fill_words(marked.parts) : code.words_of(request.message);
@@ -112,7 +112,7 @@ Verification verify_file(const MarkedFile& marked, const Key& key, bool locate) 
     const bool right_key = marked.key_fingerprint == key.fingerprint();
     if (right_key) {
       result.damage =
-          damage_of(marked, readable, *scheme, words, found.readings, result.units_found, locate);
+          damage_of(marked, readable, *bound, words, found.readings, result.units_found, locate);
     }
     if (result.damage) {
       result.units_found = result.damage->units_expected - result.damage->units_damaged;

@@ -144,12 +144,12 @@ Halfedges build_halfedges(const Mesh& mesh) {
   match_opposites(corners);
 
   Halfedges result;
-  const std::vector<std::uint32_t> vertex = split_fans(corners, result.copied_point);
+  const std::vector<std::uint32_t> vertex = split_fans(corners, result.copied_points_);
   std::uint32_t edges = 0;
   const std::vector<std::uint32_t> halfedge = number_halfedges(corners, edges);
 
-  auto& kernel = result.kernel;
-  kernel.resize(mesh.positions.size() + result.copied_point.size(), edges, mesh.triangles.size());
+  auto& kernel = result.kernel_;
+  kernel.resize(mesh.positions.size() + result.copied_points_.size(), edges, mesh.triangles.size());
   parallel_for(
       mesh.triangles.size(),
       [&](std::size_t t) {

@@ -32,10 +32,14 @@ Corners moved_corners(const Mesh& mesh, std::uint32_t face, std::span<const Move
 // Calls visit(face) for the faces of a point's first fan.
 template <typename Visit>
 void visit_faces(const Surface& surface, std::uint32_t point, const Visit& visit) {
-  const OpenMesh::VertexHandle vertex(static_cast<int>(point));
-  for (const auto face : surface.halfedges.kernel.vf_range(vertex)) {
-    visit(static_cast<std::uint32_t>(face.idx()));
-  }
+  const Halfedges& halfedges = surface.halfedges;
+  const Halfedge first = halfedges.outgoing(point);
+  if (first == kNoHalfedge) return;
+  Halfedge spoke = first;
+  do {
+    if (!halfedges.is_boundary(spoke)) visit(halfedges.face(spoke));
+    spoke = halfedges.turned(spoke);
+  } while (spoke != first);
 }
 
 // The corners of a face from a given point on.

@@ -76,6 +76,18 @@ TEST(Arrows, IncludesPointOneWay) {
   EXPECT_GT(seen, 100U);
 }
 
+// What connectivity is made of is nobody else's business.
+TEST(Arrows, OnlyHalfedgesNameTheirKernel) {
+  const std::set<std::string> doors{"engine/mesh/halfedges.h", "engine/mesh/halfedges.cpp"};
+  for (const auto& entry : fs::recursive_directory_iterator(fs::path(TRIGLYPH_SOURCE) / "engine")) {
+    if (!is_source(entry)) continue;
+    const std::string name = entry.path().lexically_relative(TRIGLYPH_SOURCE).string();
+    EXPECT_TRUE(test::read_all(entry.path()).find("OpenMesh::") == std::string::npos ||
+                doors.count(name) != 0)
+        << name << " names OpenMesh";
+  }
+}
+
 // Each library has one door.
 TEST(Arrows, LibrariesStayInTheirRooms) {
   const std::map<std::string, std::set<std::string>> doors{

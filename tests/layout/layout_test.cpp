@@ -139,7 +139,7 @@ TEST(FirstFit, TakesUnitsInOrder) {
 
 TEST(MinDegree, FindsMoreUnitsOnASurface) {
   const WordCode code(Key::trial(), {});
-  const UnitSet units = TsqScheme(code, {}).find_units(test::bumpy_ball().surface());
+  const UnitSet units = TsqScheme(code, {}).bind(test::bumpy_ball().surface())->find_units();
   const Conflicts conflicts(units.moved, units.read_or_moved(),
                             test::bumpy_ball().mesh.positions.size(), ConflictRule::ReadWrite);
   const std::size_t first_fit = first_fit_layout(conflicts).size();
@@ -158,7 +158,7 @@ TEST_P(BothRules, LocalSearchFindsTheMaximumOfSmallGraphs) {
 
 struct SurfaceUnits {
   UnitSet units =
-      TsqScheme(WordCode(Key::trial(), {}), {}).find_units(test::bumpy_ball().surface());
+      TsqScheme(WordCode(Key::trial(), {}), {}).bind(test::bumpy_ball().surface())->find_units();
   Conflicts conflicts{units.moved, units.read_or_moved(), test::bumpy_ball().mesh.positions.size(),
                       ConflictRule::ReadWrite};
 };

@@ -18,17 +18,18 @@ class FindCapacity : public testing::Test {
   MarkOptions options_ = default_mark_options("tsq", true);
   WordCode code_{Key::trial(), options_.format};
   std::unique_ptr<Scheme> scheme_ = make_scheme("tsq", code_, options_.scheme_options);
+  std::unique_ptr<BoundScheme> bound_ = scheme_->bind(test::bumpy_ball().surface());
   std::vector<Word> words_ = code_.fill_words(kProbeWords);
 
   [[nodiscard]] Capacity capacity(double drop_dearest) {
     options_.drop_dearest_percent = 100 * drop_dearest;
-    return find_capacity(test::bumpy_ball().surface(), *scheme_, words_, options_);
+    return find_capacity(test::bumpy_ball().surface(), *bound_, words_, options_);
   }
   // Of every candidate, by anchor.
   [[nodiscard]] std::vector<std::pair<std::uint32_t, float>> cheapest(const UnitSet& units) const {
     std::vector<std::uint32_t> all(units.size());
     for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
-    const CostMatrix costs = scheme_->costs(test::bumpy_ball().surface(), units, all, words_);
+    const CostMatrix costs = bound_->costs(units, all, words_);
     std::vector<std::pair<std::uint32_t, float>> found;
     for (const std::uint32_t unit : all) {
       float least = kInfeasible;

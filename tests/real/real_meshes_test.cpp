@@ -95,7 +95,7 @@ TEST(RealMeshes, MarkedBunnySurvivesWhatItShould) {
   const auto scheme = make_scheme("tsq", code, {});
   const auto message_in = [&](const Mesh& mesh) {
     const test::Solid solid(mesh);
-    return extract(solid.surface(), *scheme, code).message;
+    return extract(*scheme->bind(solid.surface()), code).message;
   };
   EXPECT_EQ(message_in(marked), request.message);
   EXPECT_EQ(message_in(test::with_significant_digits(marked, 6)), request.message);

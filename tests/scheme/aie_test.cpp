@@ -40,12 +40,9 @@ std::optional<Message> read(const Mesh& mesh, const MarkOptions& options) {
 
 // Interior edge of a grid whose points are all of valence six.
 std::uint32_t middle_edge(const test::Solid& grid, std::uint32_t from, std::uint32_t to) {
-  const auto& kernel = grid.halfedges.kernel;
-  return static_cast<std::uint32_t>(
-      kernel
-          .edge_handle(kernel.find_halfedge(OpenMesh::VertexHandle(static_cast<int>(from)),
-                                            OpenMesh::VertexHandle(static_cast<int>(to))))
-          .idx());
+  Halfedge spoke = grid.halfedges.outgoing(from);
+  while (grid.halfedges.to(spoke) != to) spoke = grid.halfedges.turned(spoke);
+  return grid.halfedges.edge(spoke);
 }
 
 //  30 31 32 33 34 35      every square is cut from lower left to upper right
@@ -103,7 +100,7 @@ TEST(Aie, BasesMayBeSharedButAreNeverMoved) {
   const MarkOptions options = options_with(AieGroups::One);
   const auto scheme =
       make_scheme("aie", WordCode(Key::trial(), options.format), options.scheme_options);
-  const UnitSet units = scheme->find_units(ball.surface());
+  const UnitSet units = scheme->bind(ball.surface())->find_units();
   for (std::size_t i = 0; i < units.size(); ++i) {
     EXPECT_EQ(units.moved[i].size(), 4U);
     EXPECT_EQ(units.read[i].size(), 8U);
@@ -169,7 +166,7 @@ TEST(Aie, AllNeighboursOutliveDamageThatOneDoesNot) {
       const bool carries = marking.positions[i] != ball.mesh.positions[i];
       if (carries && random_unit(3, i, 0) < 0.1) damaged.positions[i] *= 1.002;
     }
-    const Extraction found = extract({damaged, ball.halfedges}, *scheme, code);
+    const Extraction found = extract(*scheme->bind({damaged, ball.halfedges}), code);
     EXPECT_EQ(found.message, kMessage);
     return static_cast<double>(found.agreeing) / static_cast<double>(marking.carriers.size());
   };

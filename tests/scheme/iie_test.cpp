@@ -94,7 +94,7 @@ TEST(Iie, MovesOnlyWhatNoOtherUnitReads) {
   const auto& ball = test::bumpy_ball();
   const IieScheme scheme(WordCode(Key::trial(), IieOptions::format(true)),
                          IieOptions::defaults(true));
-  const UnitSet units = scheme.find_units(ball.surface());
+  const UnitSet units = scheme.bind(ball.surface())->find_units();
   const auto valid = choose_layout(Conflicts(units.moved, units.read_or_moved(),
                                              ball.mesh.positions.size(), ConflictRule::ReadWrite),
                                    {});

@@ -185,17 +185,18 @@ TEST(AllBallInvariants, AreThoseOfEachAndSkipTheUnfit) {
   const double radius = 4 * mean_edge_length(mesh);
   std::vector<char> unfit(mesh.triangles.size(), 0);
   unfit[100] = 1;
+  const SpatialIndex index(mesh.positions, mesh.triangles);
   test::expect_same_for_any_threads([&] {
     std::vector<double> flat;
-    for (const BallInvariants& found :
-         all_ball_invariants(mesh.positions, mesh.triangles, unfit, mesh.positions, radius, 5000)) {
+    for (const BallInvariants& found : all_ball_invariants(mesh.positions, mesh.triangles, index,
+                                                           unfit, mesh.positions, radius, 5000)) {
       flat.push_back(std::isnan(found.area) ? -1 : found.area);
       flat.push_back(std::isnan(found.volume) ? -1 : found.volume);
     }
     return flat;
   });
-  const auto all =
-      all_ball_invariants(mesh.positions, mesh.triangles, unfit, mesh.positions, radius, 5000);
+  const auto all = all_ball_invariants(mesh.positions, mesh.triangles, index, unfit, mesh.positions,
+                                       radius, 5000);
   const Triangle& bad = mesh.triangles[100];
   std::size_t skipped = 0;
   for (std::size_t i = 0; i < all.size(); ++i) {

@@ -47,8 +47,8 @@ struct Chosen {
   std::vector<std::uint32_t> valid;
 };
 
-Chosen choose(const Scheme& scheme, const Surface& surface) {
-  Chosen chosen{scheme.find_units(surface), {}};
+Chosen choose(const BoundScheme& scheme, const Surface& surface) {
+  Chosen chosen{scheme.find_units(), {}};
   const Conflicts conflicts(chosen.units.moved, chosen.units.read_or_moved(),
                             surface.mesh.positions.size(), ConflictRule::ReadWrite);
   chosen.valid = choose_layout(conflicts, {});
@@ -56,9 +56,9 @@ Chosen choose(const Scheme& scheme, const Surface& surface) {
 }
 
 // A word that each unit can carry, drawn at random; units without any are left out.
-std::vector<Placement> random_placements(const Scheme& scheme, const Surface& surface,
-                                         const Chosen& chosen, std::span<const Word> words) {
-  const CostMatrix costs = scheme.costs(surface, chosen.units, chosen.valid, words);
+std::vector<Placement> random_placements(const BoundScheme& scheme, const Chosen& chosen,
+                                         std::span<const Word> words) {
+  const CostMatrix costs = scheme.costs(chosen.units, chosen.valid, words);
   const auto count = static_cast<std::uint32_t>(words.size());
   std::vector<Placement> placements;
   for (std::uint32_t i = 0; i < chosen.valid.size(); ++i) {
@@ -75,7 +75,7 @@ std::vector<Placement> random_placements(const Scheme& scheme, const Surface& su
 
 TEST_P(EveryScheme, AnchorsAscendAndUnitsReadWhatTheyMove) {
   const auto& ball = test::bumpy_ball();
-  const UnitSet units = scheme()->find_units(ball.surface());
+  const UnitSet units = scheme()->bind(ball.surface())->find_units();
   EXPECT_GT(units.size(), 500U);
   EXPECT_EQ(std::adjacent_find(units.anchors.begin(), units.anchors.end(), std::greater_equal()),
             units.anchors.end());
@@ -92,12 +92,13 @@ TEST_P(EveryScheme, AnchorsAscendAndUnitsReadWhatTheyMove) {
 TEST_P(EveryScheme, EveryPlacedWordIsReadBackAtItsAnchor) {
   const auto& ball = test::bumpy_ball();
   const auto scheme = this->scheme();
-  const Chosen chosen = choose(*scheme, ball.surface());
+  const auto bound = scheme->bind(ball.surface());
+  const Chosen chosen = choose(*bound, ball.surface());
   const auto words = code_.fill_words(std::min(code_.capacity(), 256U));
-  const auto placements = random_placements(*scheme, ball.surface(), chosen, words);
-  const Embedding embedding = scheme->embed(ball.surface(), chosen.units, placements, words);
+  const auto placements = random_placements(*bound, chosen, words);
+  const Embedding embedding = bound->embed(chosen.units, placements, words);
   const Mesh marked{embedding.positions, ball.mesh.triangles};
-  const auto readings = scheme->read({marked, ball.halfedges});
+  const auto readings = scheme->bind({marked, ball.halfedges})->read();
 
   EXPECT_GT(placements.size(), chosen.valid.size() * 9 / 10);
   EXPECT_TRUE(embedding.failed.empty());
@@ -121,10 +122,11 @@ TEST_P(EveryScheme, CostIsTheMoveOfTheUnit) {
   const auto words = code_.fill_words(std::min(code_.capacity(), 64U));
   for (const CostFunction cost : {CostFunction::Displacement, CostFunction::Rms}) {
     const auto scheme = this->scheme(cost);
-    const Chosen chosen = choose(*scheme, ball.surface());
-    const CostMatrix costs = scheme->costs(ball.surface(), chosen.units, chosen.valid, words);
-    const auto placements = random_placements(*scheme, ball.surface(), chosen, words);
-    const Embedding embedding = scheme->embed(ball.surface(), chosen.units, placements, words);
+    const auto bound = scheme->bind(ball.surface());
+    const Chosen chosen = choose(*bound, ball.surface());
+    const CostMatrix costs = bound->costs(chosen.units, chosen.valid, words);
+    const auto placements = random_placements(*bound, chosen, words);
+    const Embedding embedding = bound->embed(chosen.units, placements, words);
     EXPECT_TRUE(embedding.failed.empty());
     std::uint32_t row = 0;
     for (const Placement& placement : placements) {
@@ -150,8 +152,9 @@ TEST_P(EveryScheme, HausdorffCostIsAtMostTheFarthestMove) {
   const auto words = code_.fill_words(std::min(code_.capacity(), 16U));
   const auto matrix = [&](CostFunction function) {
     const auto scheme = this->scheme(function);
-    const Chosen chosen = choose(*scheme, ball.surface());
-    return scheme->costs(ball.surface(), chosen.units, chosen.valid, words).values;
+    const auto bound = scheme->bind(ball.surface());
+    const Chosen chosen = choose(*bound, ball.surface());
+    return bound->costs(chosen.units, chosen.valid, words).values;
   };
   const auto farthest = matrix(CostFunction::Displacement);
   const auto hausdorff = matrix(CostFunction::Hausdorff);
@@ -174,15 +177,15 @@ TEST_P(EveryScheme, HausdorffCostIsAtMostTheFarthestMove) {
 TEST_P(EveryScheme, ReadsTheSameUnderAnySimilarityAndOrder) {
   const auto& ball = test::bumpy_ball();
   const auto scheme = relative_scheme();
-  const Chosen chosen = choose(*scheme, ball.surface());
+  const auto bound = scheme->bind(ball.surface());
+  const Chosen chosen = choose(*bound, ball.surface());
   const auto words = code_.fill_words(std::min(code_.capacity(), 256U));
   const Embedding embedding =
-      scheme->embed(ball.surface(), chosen.units,
-                    random_placements(*scheme, ball.surface(), chosen, words), words);
+      bound->embed(chosen.units, random_placements(*bound, chosen, words), words);
   const auto good_words = [&](const Mesh& mesh) {
     std::multiset<std::pair<std::uint32_t, std::uint32_t>> found;
     const test::Solid solid(mesh);
-    for (const Reading& reading : scheme->read(solid.surface())) {
+    for (const Reading& reading : scheme->bind(solid.surface())->read()) {
       if (reading.worst_offset < 0.1) found.insert({reading.word.subscript, reading.word.part});
     }
     return found;
@@ -199,8 +202,8 @@ TEST_P(EveryScheme, ReadsTheSameUnderAnySimilarityAndOrder) {
 TEST_P(EveryScheme, BoundariesAndTinyMeshesOfferNothing) {
   for (Mesh mesh : {test::tetrahedron(), test::flat_grid(1, 1), Mesh{}}) {
     const test::Solid solid(std::move(mesh));
-    EXPECT_EQ(relative_scheme()->find_units(solid.surface()).size(), 0U);
-    EXPECT_TRUE(relative_scheme()->read(solid.surface()).empty());
+    EXPECT_EQ(relative_scheme()->bind(solid.surface())->find_units().size(), 0U);
+    EXPECT_TRUE(relative_scheme()->bind(solid.surface())->read().empty());
   }
 }
 
@@ -216,14 +219,16 @@ TEST_P(EveryScheme, DegenerateTrianglesAreNeitherUnitsNorTrouble) {
   for (Vec3& p : line.positions) p = Vec3(p[0] + p[1], 0, 0);
   for (const Mesh& mesh : {collapsed, line}) {
     const test::Solid solid(mesh);
-    const UnitSet units = scheme()->find_units(solid.surface());
-    for (const Reading& reading : scheme()->read(solid.surface())) {
+    const auto scheme = this->scheme();
+    const auto bound = scheme->bind(solid.surface());
+    const UnitSet units = bound->find_units();
+    for (const Reading& reading : bound->read()) {
       EXPECT_TRUE(std::isfinite(reading.weight));
     }
     std::vector<std::uint32_t> all(units.size());
     std::iota(all.begin(), all.end(), 0U);
     const auto words = code_.fill_words(4);
-    for (const float cost : scheme()->costs(solid.surface(), units, all, words).values) {
+    for (const float cost : bound->costs(units, all, words).values) {
       EXPECT_FALSE(std::isnan(cost));
     }
   }
@@ -234,14 +239,66 @@ TEST_P(EveryScheme, ResultsDoNotDependOnThreads) {
   const auto words = code_.fill_words(std::min(code_.capacity(), 100U));
   const auto scheme = this->scheme();
   test::expect_same_for_any_threads([&] {
-    const Chosen chosen = choose(*scheme, ball.surface());
-    const auto costs = scheme->costs(ball.surface(), chosen.units, chosen.valid, words);
+    const auto bound = scheme->bind(ball.surface());
+    const Chosen chosen = choose(*bound, ball.surface());
+    const auto costs = bound->costs(chosen.units, chosen.valid, words);
     const auto embedding =
-        scheme->embed(ball.surface(), chosen.units,
-                      random_placements(*scheme, ball.surface(), chosen, words), words);
+        bound->embed(chosen.units, random_placements(*bound, chosen, words), words);
     return std::make_tuple(chosen.units.anchors, chosen.units.moved.points, costs.values,
                            embedding.positions, embedding.failed);
   });
+}
+
+bool same(std::span<const Reading> a, std::span<const Reading> b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Reading& x, const Reading& y) {
+    return x.anchor == y.anchor && x.word == y.word && x.weight == y.weight &&
+           x.worst_offset == y.worst_offset && x.bit_weights == y.bit_weights;
+  });
+}
+
+// Of the ball's units, each with a word that it can carry.
+Embedding embed_randomly(const BoundScheme& bound, const WordCode& code) {
+  const Chosen chosen = choose(bound, test::bumpy_ball().surface());
+  const auto words = code.fill_words(std::min(code.capacity(), 100U));
+  return bound.embed(chosen.units, random_placements(bound, chosen, words), words);
+}
+
+TEST_P(EveryScheme, MovedToReadsLikeAFreshBind) {
+  const auto& ball = test::bumpy_ball();
+  for (const bool is_relative : {false, true}) {
+    const auto scheme = is_relative ? relative_scheme() : this->scheme();
+    const auto bound = scheme->bind(ball.surface());
+    const Mesh marked{embed_randomly(*bound, code_).positions, ball.mesh.triangles};
+    const auto fresh = scheme->bind({marked, ball.halfedges});
+    const auto moved = bound->moved_to({marked, ball.halfedges});
+    EXPECT_FALSE(fresh->read().empty());
+    EXPECT_TRUE(same(moved->read(), fresh->read()));
+    EXPECT_EQ(moved->cell_size(), fresh->cell_size());
+    const UnitSet units = fresh->find_units();
+    EXPECT_EQ(moved->find_units().anchors, units.anchors);
+    EXPECT_EQ(moved->points_of(units.anchors).points, fresh->points_of(units.anchors).points);
+    EXPECT_TRUE(same(moved->moved_to(ball.surface())->read(), bound->read()));
+  }
+}
+
+TEST_P(EveryScheme, CallsCanBeRepeated) {
+  const auto& ball = test::bumpy_ball();
+  const auto scheme = relative_scheme();
+  const auto bound = scheme->bind(ball.surface());
+  const auto words = code_.fill_words(std::min(code_.capacity(), 100U));
+  const Chosen chosen = choose(*bound, ball.surface());
+  const auto placements = random_placements(*bound, chosen, words);
+  const Embedding first = bound->embed(chosen.units, placements, words);
+  const CostMatrix costs = bound->costs(chosen.units, chosen.valid, words);
+  const auto readings = bound->read();
+  EXPECT_EQ(bound->find_units().anchors, chosen.units.anchors);
+  EXPECT_EQ(bound->find_units().moved.points, chosen.units.moved.points);
+  // of a few units, so that embed no longer finds the others among those asked about last
+  (void)bound->costs(chosen.units, std::span(chosen.valid).first(chosen.valid.size() / 2), words);
+  EXPECT_EQ(bound->embed(chosen.units, placements, words).positions, first.positions);
+  EXPECT_EQ(bound->costs(chosen.units, chosen.valid, words).values, costs.values);
+  EXPECT_EQ(bound->embed(chosen.units, placements, words).positions, first.positions);
+  EXPECT_TRUE(same(bound->read(), readings));
 }
 
 TEST_P(EveryScheme, RefusesCellsWithoutWidth) {

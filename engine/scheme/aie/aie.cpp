@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 
 #include "engine/base/error.h"
+#include "engine/base/once.h"
 #include "engine/base/parallel.h"
+#include "engine/mesh/edge_length.h"
 #include "engine/scheme/cost_rows.h"
 #include "engine/scheme/local_cost.h"
 
@@ -32,10 +35,49 @@ int word_bits(const WordFormat& format) {
 
 }  // namespace
 
+struct AieScheme::Basis {
+  std::uint32_t edge;
+  AffineNorm norm;
+};
+
 struct AieScheme::Site {
   EdgeNeighbourhood around;
   AffineNorm norm;
   double reach;  // greatest move, model units
+};
+
+struct AieScheme::Way {
+  bool shows_marker = true;  // in the groups read so far
+  std::array<GroupReading, 4> groups;
+};
+
+// The scheme on one surface.
+class AieScheme::Bound final : public BoundScheme {
+ public:
+  Bound(const AieScheme& scheme, const Surface& surface) : scheme_(scheme), surface_(surface) {}
+
+  [[nodiscard]] UnitSet find_units() const override;
+  [[nodiscard]] CostMatrix costs(const UnitSet& units, std::span<const std::uint32_t> chosen,
+                                 std::span<const Word> words) const override;
+  [[nodiscard]] Embedding embed(const UnitSet& units, std::span<const Placement> placements,
+                                std::span<const Word> words) const override;
+  [[nodiscard]] std::vector<Reading> read() const override;
+  [[nodiscard]] PointLists points_of(std::span<const std::uint32_t> anchors) const override;
+  [[nodiscard]] std::unique_ptr<BoundScheme> moved_to(const Surface& moved) const override {
+    return std::make_unique<Bound>(scheme_, moved);
+  }
+  [[nodiscard]] double cell_size() const override {
+    return scheme_.options_.step * mean_edge_length(surface_.mesh);
+  }
+
+ private:
+  [[nodiscard]] const LocalCost& local_cost() const {
+    return local_cost_.get([&] { return LocalCost(surface_, scheme_.options_.cost); });
+  }
+
+  const AieScheme& scheme_;
+  const Surface surface_;
+  Once<LocalCost> local_cost_;
 };
 
 AieScheme::Channel AieScheme::make_channel(const WordCode& code, double step, std::size_t group) {
@@ -56,6 +98,10 @@ AieScheme::AieScheme(const WordCode& code, const AieOptions& options)
   if (word_bits(format_) > kMaxWordBits) {
     throw Error(ErrorCode::Usage, {}, "", "aie holds 32 bits a unit: marker, subscript and part");
   }
+}
+
+std::unique_ptr<BoundScheme> AieScheme::bind(const Surface& surface) const {
+  return std::make_unique<Bound>(*this, surface);
 }
 
 GroupRule AieScheme::rule_of(std::uint32_t anchor) const {
@@ -96,24 +142,33 @@ std::optional<Vec3> AieScheme::place(const Site& site, std::size_t group, const 
   return best;
 }
 
-std::optional<AieScheme::Site> AieScheme::site_at(const Surface& surface,
-                                                  std::uint32_t anchor) const {
-  const std::uint32_t edge = anchor / kAlternatives;
-  const auto basis = basis_of(surface, edge, false);
-  if (!basis) return std::nullopt;
-  const std::array<Vec3, 4> corners = corners_of(surface.mesh, *basis);
-  const AffineNorm norm(corners, kPlaneBelow);
+std::optional<AieScheme::Basis> AieScheme::basis_at(const Surface& surface, std::uint32_t edge) {
+  const auto points = basis_of(surface, edge, false);
+  if (!points) return std::nullopt;
+  const AffineNorm norm(corners_of(surface.mesh, *points), kPlaneBelow);
   const bool exact =
       norm.is_plane() ? norm.flatness() <= kExactPlane : norm.flatness() >= kMinFlatness;
   if (!exact || norm.straightness() < kMinStraightness) return std::nullopt;
-  const auto around = neighbourhood_of(surface, edge, false, rule_of(anchor));
+  return Basis{edge, norm};
+}
+
+std::optional<AieScheme::Site> AieScheme::site_on(const Surface& surface, const Basis& basis,
+                                                  std::uint32_t anchor) const {
+  const auto around = neighbourhood_of(surface, basis.edge, false, rule_of(anchor));
   if (!around) return std::nullopt;
+  const AffineNorm& norm = basis.norm;
   if (norm.is_plane()) {
     for (const std::uint32_t point : around->all_groups()) {
       if (norm.height(surface.mesh.positions[point]) > kExactPlane) return std::nullopt;
     }
   }
   return Site{*around, norm, kMaxMove * norm.greatest_deviation()};
+}
+
+std::optional<AieScheme::Site> AieScheme::site_at(const Surface& surface,
+                                                  std::uint32_t anchor) const {
+  const auto basis = basis_at(surface, anchor / kAlternatives);
+  return basis ? site_on(surface, *basis, anchor) : std::nullopt;
 }
 
 float AieScheme::group_cost(const Mesh& mesh, const LocalCost& local, const Site& site,
@@ -128,50 +183,56 @@ float AieScheme::group_cost(const Mesh& mesh, const LocalCost& local, const Site
   return local.of_part(std::span<const Move>(moves.data(), count));
 }
 
-UnitSet AieScheme::find_units(const Surface& surface) const {
-  struct Found {
-    std::uint32_t anchor;
-    EdgeNeighbourhood around;
+UnitSet AieScheme::Bound::find_units() const {
+  const std::size_t edges = surface_.halfedges.edge_count();
+  std::vector<UnitSet> parts((edges + kBlock - 1) / kBlock);
+  const auto find_at = [&](std::uint32_t edge, UnitSet& found) {
+    const std::optional<Basis> basis = basis_at(surface_, edge);
+    if (!basis) return;
+    for (std::uint32_t i = 0; i < kAlternatives; ++i) {
+      const std::uint32_t anchor = kAlternatives * edge + i;
+      const std::optional<Site> site = scheme_.site_on(surface_, *basis, anchor);
+      if (!site) continue;
+      const auto moved = site->around.all_groups();
+      found.anchors.push_back(anchor);
+      found.moved.append(moved);
+      found.read.points.insert(found.read.points.end(), site->around.basis.begin(),
+                               site->around.basis.end());
+      found.read.append(moved);
+    }
   };
-  const auto found = parallel_collect<Found>(surface.halfedges.kernel.n_edges() * kAlternatives,
-                                             [&](std::size_t i, std::vector<Found>& out) {
-                                               const auto anchor = static_cast<std::uint32_t>(i);
-                                               const std::optional<Site> site =
-                                                   site_at(surface, anchor);
-                                               if (site) out.push_back({anchor, site->around});
-                                             });
+  parallel_blocks(edges, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t edge = begin; edge < end; ++edge) {
+      find_at(static_cast<std::uint32_t>(edge), parts[begin / kBlock]);
+    }
+  });
   UnitSet units;
-  units.anchors.reserve(found.size());
-  for (const Found& unit : found) {
-    const auto moved = unit.around.all_groups();
-    units.anchors.push_back(unit.anchor);
-    units.moved.append(moved);
-    units.read.points.insert(units.read.points.end(), unit.around.basis.begin(),
-                             unit.around.basis.end());
-    units.read.append(moved);
+  for (const UnitSet& part : parts) {
+    units.anchors.insert(units.anchors.end(), part.anchors.begin(), part.anchors.end());
+    units.moved.append(part.moved);
+    units.read.append(part.read);
   }
   return units;
 }
 
-CostMatrix AieScheme::costs(const Surface& surface, const UnitSet& units,
-                            std::span<const std::uint32_t> chosen,
-                            std::span<const Word> words) const {
+CostMatrix AieScheme::Bound::costs(const UnitSet& units, std::span<const std::uint32_t> chosen,
+                                   std::span<const Word> words) const {
   std::vector<GroupBits> bits_of;
-  for (const Word& word : words) bits_of.push_back(deal_out(word));
-  const LocalCost local(surface, options_.cost);
+  for (const Word& word : words) bits_of.push_back(scheme_.deal_out(word));
+  const LocalCost& local = local_cost();
   return fill_cost_rows(chosen.size(), words.size(), [&](std::size_t row, std::span<float> costs) {
-    const std::optional<Site> site = site_at(surface, units.anchors[chosen[row]]);
+    const std::optional<Site> site = scheme_.site_at(surface_, units.anchors[chosen[row]]);
     if (!site) return;
     // a group has few values and many words share them
     std::array<std::vector<float>, 4> known;
     for (std::size_t k = 0; k < 4; ++k) {
-      known[k].assign(std::size_t{1} << channels_[k].bits(), -1);
+      known[k].assign(std::size_t{1} << scheme_.channels_[k].bits(), -1);
     }
     for (std::size_t word = 0; word < costs.size(); ++word) {
       std::array<float, 4> group_costs{};
       for (std::size_t k = 0; k < 4; ++k) {
         float& cost = known[k][bits_of[word][k]];
-        if (cost < 0) cost = group_cost(surface.mesh, local, *site, k, bits_of[word][k]);
+        if (cost < 0) cost = scheme_.group_cost(surface_.mesh, local, *site, k, bits_of[word][k]);
         group_costs[k] = cost;
       }
       costs[word] = local.combine(group_costs, site->around.all_groups().size());
@@ -179,19 +240,18 @@ CostMatrix AieScheme::costs(const Surface& surface, const UnitSet& units,
   });
 }
 
-Embedding AieScheme::embed(const Surface& surface, const UnitSet& units,
-                           std::span<const Placement> placements,
-                           std::span<const Word> words) const {
-  Embedding embedding{surface.mesh.positions, {}};
+Embedding AieScheme::Bound::embed(const UnitSet& units, std::span<const Placement> placements,
+                                  std::span<const Word> words) const {
+  Embedding embedding{surface_.mesh.positions, {}};
   const auto embed_unit = [&](const Placement& placement) {
-    const std::optional<Site> site = site_at(surface, units.anchors[placement.unit]);
+    const std::optional<Site> site = scheme_.site_at(surface_, units.anchors[placement.unit]);
     if (!site) return false;
-    const GroupBits bits = deal_out(words[placement.word]);
+    const GroupBits bits = scheme_.deal_out(words[placement.word]);
     std::array<Vec3, EdgeNeighbourhood::kMaxPoints> targets;
     std::size_t next = 0;
     for (std::size_t k = 0; k < 4; ++k) {
       for (const std::uint32_t point : site->around.group(k)) {
-        const auto to = place(*site, k, surface.mesh.positions[point], bits[k]);
+        const auto to = scheme_.place(*site, k, surface_.mesh.positions[point], bits[k]);
         if (!to) return false;
         targets[next++] = *to;
       }
@@ -212,24 +272,16 @@ Embedding AieScheme::embed(const Surface& surface, const UnitSet& units,
 
 // A group's points carry the same bits; where they disagree, those nearest to their cells' centres
 // win. Its distance counts every point that disagrees as one on the border.
-std::optional<AieScheme::GroupReading> AieScheme::read_group(const Mesh& mesh,
-                                                             const AffineNorm& norm,
-                                                             const EdgeNeighbourhood& around,
-                                                             std::size_t group) const {
-  const Quantiser& quantiser = channels_[group].quantiser(norm);
+AieScheme::GroupReading AieScheme::read_group(const Quantiser& quantiser,
+                                              std::span<const double> values) {
   std::array<Quantiser::Cell, EdgeNeighbourhood::kMaxPoints> cells;
-  const auto points = around.group(group);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Vec3& position = mesh.positions[points[i]];
-    if (norm.is_plane() && norm.height(position) > kMaxHeight) return std::nullopt;
-    cells[i] = quantiser.cell_of(std::log(norm(position)));
-  }
+  for (std::size_t i = 0; i < values.size(); ++i) cells[i] = quantiser.cell_of(values[i]);
   GroupReading result;
   float best = -1;
-  for (std::size_t i = 0; i < points.size(); ++i) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
     float support = 0;
     std::size_t supporters = 0;
-    for (std::size_t j = 0; j < points.size(); ++j) {
+    for (std::size_t j = 0; j < values.size(); ++j) {
       if (cells[j].bits != cells[i].bits) continue;
       support += 1 - cells[j].distance;
       ++supporters;
@@ -237,36 +289,32 @@ std::optional<AieScheme::GroupReading> AieScheme::read_group(const Mesh& mesh,
     if (support <= best) continue;
     best = support;
     result.bits = cells[i].bits;
-    result.unanimous = supporters == points.size();
+    result.unanimous = supporters == values.size();
   }
-  result.distance = 1 - best / static_cast<float>(points.size());
+  result.distance = 1 - best / static_cast<float>(values.size());
   return result;
 }
 
-std::optional<AieScheme::UnitReading> AieScheme::read_one_way(const Surface& surface,
-                                                              const AffineNorm& norm,
-                                                              std::uint32_t anchor,
-                                                              bool reversed) const {
-  const auto around = neighbourhood_of(surface, anchor / kAlternatives, reversed, rule_of(anchor));
-  if (!around) return std::nullopt;
-  std::array<GroupReading, 4> groups;
+// Of the marker's bits, those that were dealt out to this group.
+bool AieScheme::shows_marker(std::size_t group, std::uint32_t bits) const {
+  for (int i = static_cast<int>(group); i < format_.marker_bits; i += 4) {
+    if ((bits >> (i / 4) & 1) != (marker_ >> i & 1)) return false;
+  }
+  return true;
+}
+
+AieScheme::UnitReading AieScheme::unit_of(const Way& way, std::uint32_t anchor) const {
   const auto bit_of_word = [&](int i) {
-    return groups[static_cast<std::size_t>(i % 4)].bits >> (i / 4) & 1;
+    return way.groups[static_cast<std::size_t>(i % 4)].bits >> (i / 4) & 1;
   };
   UnitReading unit;
   Reading& reading = unit.reading;
   reading.anchor = anchor;
   reading.weight = 1;
-  for (int k = 0; k < 4; ++k) {
-    const auto found = read_group(surface.mesh, norm, *around, static_cast<std::size_t>(k));
-    if (!found) return std::nullopt;
-    groups[static_cast<std::size_t>(k)] = *found;
-    for (int i = k; i < format_.marker_bits; i += 4) {
-      if (bit_of_word(i) != (marker_ >> i & 1)) return std::nullopt;  // most edges end here
-    }
-    reading.weight *= 1 - found->distance;
-    reading.worst_offset = std::max(reading.worst_offset, found->distance);
-    unit.unanimous = unit.unanimous && found->unanimous;
+  for (const GroupReading& group : way.groups) {
+    reading.weight *= 1 - group.distance;
+    reading.worst_offset = std::max(reading.worst_offset, group.distance);
+    unit.unanimous = unit.unanimous && group.unanimous;
   }
   for (int i = 0; i < format_.subscript_bits; ++i) {
     reading.word.subscript |= bit_of_word(format_.marker_bits + i) << i;
@@ -275,30 +323,55 @@ std::optional<AieScheme::UnitReading> AieScheme::read_one_way(const Surface& sur
     const int at = format_.marker_bits + format_.subscript_bits + i;
     reading.word.part |= bit_of_word(at) << i;
     reading.bit_weights[static_cast<std::size_t>(i)] =
-        1 - groups[static_cast<std::size_t>(at % 4)].distance;
+        1 - way.groups[static_cast<std::size_t>(at % 4)].distance;
   }
   return unit;
 }
 
+// Along the edge and against it: the points are the same, and group k of the one way is group k ^ 1
+// of the other. Most edges show the marker neither way after a group or two, and end there.
 std::optional<AieScheme::UnitReading> AieScheme::read_unit(const Surface& surface,
                                                            const AffineNorm& norm,
                                                            std::uint32_t anchor) const {
-  const std::optional<UnitReading> forward = read_one_way(surface, norm, anchor, false);
-  const std::optional<UnitReading> backward = read_one_way(surface, norm, anchor, true);
+  std::array<Way, 2> ways;
+  const auto read_both_ways = [&](std::size_t k, std::span<const std::uint32_t> points) {
+    std::array<double, EdgeNeighbourhood::kMaxPoints> values;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Vec3& position = surface.mesh.positions[points[i]];
+      if (norm.is_plane() && norm.height(position) > kMaxHeight) return false;
+      values[i] = std::log(norm(position));
+    }
+    for (std::size_t direction = 0; direction < 2; ++direction) {
+      Way& way = ways[direction];
+      if (!way.shows_marker) continue;
+      const std::size_t group = k ^ direction;
+      way.groups[group] =
+          read_group(channels_[group].quantiser(norm), {values.data(), points.size()});
+      way.shows_marker = shows_marker(group, way.groups[group].bits);
+    }
+    return ways[0].shows_marker || ways[1].shows_marker;
+  };
+  const bool is_whole = neighbourhood_of(surface, anchor / kAlternatives, false, rule_of(anchor),
+                                         std::cref(read_both_ways))
+                            .has_value();
+  if (!is_whole) return std::nullopt;
+  std::optional<UnitReading> forward, backward;
+  if (ways[0].shows_marker) forward = unit_of(ways[0], anchor);
+  if (ways[1].shows_marker) backward = unit_of(ways[1], anchor);
   const bool turned = backward && (!forward || backward->reading.weight > forward->reading.weight);
   return turned ? backward : forward;
 }
 
-std::vector<Reading> AieScheme::read(const Surface& surface) const {
+std::vector<Reading> AieScheme::Bound::read() const {
   const auto read_edge = [&](std::size_t i, std::vector<Reading>& out) {
     const auto edge = static_cast<std::uint32_t>(i);
-    const auto basis = basis_of(surface, edge, false);
+    const auto basis = basis_of(surface_, edge, false);
     if (!basis) return;
-    const AffineNorm norm(corners_of(surface.mesh, *basis), kPlaneBelow);
+    const AffineNorm norm(corners_of(surface_.mesh, *basis), kPlaneBelow);
     if (!(norm.straightness() > 0)) return;
-    auto first = read_unit(surface, norm, kAlternatives * edge);
-    auto second = read_unit(surface, norm, kAlternatives * edge + 1);
-    const bool nested = options_.groups == AieGroups::All;
+    auto first = scheme_.read_unit(surface_, norm, kAlternatives * edge);
+    auto second = scheme_.read_unit(surface_, norm, kAlternatives * edge + 1);
+    const bool nested = scheme_.options_.groups == AieGroups::All;
     if (nested && first && second && first->reading.word == second->reading.word) {
       // one unit. Its points are those of the larger grouping if all of these agree: in a unit of
       // the smaller one the others are strangers, and agree with chance 2^-(bits of the word).
@@ -308,16 +381,16 @@ std::vector<Reading> AieScheme::read(const Surface& surface) const {
     if (first) out.push_back(first->reading);
     if (second) out.push_back(second->reading);
   };
-  return parallel_collect<Reading>(surface.halfedges.kernel.n_edges(), read_edge);
+  return parallel_collect<Reading>(surface_.halfedges.edge_count(), read_edge);
 }
 
-PointLists AieScheme::points_of(const Surface& surface,
-                                std::span<const std::uint32_t> anchors) const {
+PointLists AieScheme::Bound::points_of(std::span<const std::uint32_t> anchors) const {
   PointLists lists;
   for (const std::uint32_t anchor : anchors) {
     std::vector<std::uint32_t> points;
-    if (anchor / kAlternatives < surface.halfedges.kernel.n_edges()) {
-      const auto around = neighbourhood_of(surface, anchor / kAlternatives, false, rule_of(anchor));
+    if (anchor / kAlternatives < surface_.halfedges.edge_count()) {
+      const auto around =
+          neighbourhood_of(surface_, anchor / kAlternatives, false, scheme_.rule_of(anchor));
       if (around) {
         points.assign(around->basis.begin(), around->basis.end());
         points.insert(points.end(), around->all_groups().begin(), around->all_groups().end());

@@ -14,9 +14,8 @@
 // 3. Where basis and neighbours lie in a plane (CAD parts) the norm is that of the plane, with
 //    cells kPlaneSteps times narrower.
 // 4. The bits of marker, subscript and part are dealt out to the groups in turn. A group that
-// carried
-//    nothing but the marker would have to move as far in whatever unit and under whatever word, and
-//    assignment could not better it.
+//    carried nothing but the marker would have to move as far in whatever unit and under whatever
+//    word, and assignment could not better it.
 //
 // Survives affine maps, also with reflection, any reordering, cropping and rounding well below a
 // cell; not noise (the norm amplifies it wherever the surface is flat), remeshing, or flipping the
@@ -40,24 +39,11 @@ class AieScheme final : public Scheme {
   // Throws Error Usage if m + s + w > 32 or the step is out of range.
   AieScheme(const WordCode& code, const AieOptions& options);
 
-  // An anchor is kAlternatives * edge + alternative: one way of grouping. O(edges), parallel.
-  [[nodiscard]] UnitSet find_units(const Surface& surface) const override;
-
-  // O(chosen * (2^(bits of a group) + words)), parallel over units.
-  [[nodiscard]] CostMatrix costs(const Surface& surface, const UnitSet& units,
-                                 std::span<const std::uint32_t> chosen,
-                                 std::span<const Word> words) const override;
-
-  [[nodiscard]] Embedding embed(const Surface& surface, const UnitSet& units,
-                                std::span<const Placement> placements,
-                                std::span<const Word> words) const override;
-
-  // Tries every edge both ways and with all groupings. A unit whose points are among those of
-  // another grouping of its edge is read once, not twice.
-  [[nodiscard]] std::vector<Reading> read(const Surface& surface) const override;
-
-  [[nodiscard]] PointLists points_of(const Surface& surface,
-                                     std::span<const std::uint32_t> anchors) const override;
+  // An anchor is kAlternatives * edge + alternative: one way of grouping. All calls are parallel:
+  // find_units and read take O(edges), costs O(chosen * (2^(bits of a group) + words)). read tries
+  // every edge both ways and with all groupings; a unit whose points are among those of another
+  // grouping of its edge is read once, not twice.
+  [[nodiscard]] std::unique_ptr<BoundScheme> bind(const Surface& surface) const override;
 
   static constexpr std::uint32_t kAlternatives = 2;
 
@@ -75,7 +61,10 @@ class AieScheme final : public Scheme {
     [[nodiscard]] int bits() const { return solid.bits(); }
   };
   using GroupBits = std::array<std::uint32_t, 4>;  // what each group carries of a word
-  struct Site;                                     // a unit's basis and groups, ready to be moved
+  class Bound;
+  struct Basis;  // of an edge that may be marked
+  struct Site;   // a unit's basis and groups, ready to be moved
+  struct Way;    // what an edge reads in one direction
 
   // What a group's points say together.
   struct GroupReading {
@@ -91,17 +80,18 @@ class AieScheme final : public Scheme {
   [[nodiscard]] static Channel make_channel(const WordCode& code, double step, std::size_t group);
   [[nodiscard]] GroupRule rule_of(std::uint32_t anchor) const;
   [[nodiscard]] GroupBits deal_out(const Word& word) const;
+  [[nodiscard]] static std::optional<Basis> basis_at(const Surface& surface, std::uint32_t edge);
+  [[nodiscard]] std::optional<Site> site_on(const Surface& surface, const Basis& basis,
+                                            std::uint32_t anchor) const;
   [[nodiscard]] std::optional<Site> site_at(const Surface& surface, std::uint32_t anchor) const;
   [[nodiscard]] std::optional<Vec3> place(const Site& site, std::size_t group, const Vec3& point,
                                           std::uint32_t bits) const;
   [[nodiscard]] float group_cost(const Mesh& mesh, const LocalCost& local, const Site& site,
                                  std::size_t group, std::uint32_t bits) const;
-  [[nodiscard]] std::optional<GroupReading> read_group(const Mesh& mesh, const AffineNorm& norm,
-                                                       const EdgeNeighbourhood& around,
-                                                       std::size_t group) const;
-  [[nodiscard]] std::optional<UnitReading> read_one_way(const Surface& surface,
-                                                        const AffineNorm& norm,
-                                                        std::uint32_t anchor, bool reversed) const;
+  [[nodiscard]] static GroupReading read_group(const Quantiser& quantiser,
+                                               std::span<const double> values);
+  [[nodiscard]] bool shows_marker(std::size_t group, std::uint32_t bits) const;
+  [[nodiscard]] UnitReading unit_of(const Way& way, std::uint32_t anchor) const;
   [[nodiscard]] std::optional<UnitReading> read_unit(const Surface& surface, const AffineNorm& norm,
                                                      std::uint32_t anchor) const;
 

@@ -5,9 +5,6 @@
 namespace triglyph {
 namespace {
 
-using Kernel = OpenMesh::TriConnectivity;
-using Halfedge = OpenMesh::HalfedgeHandle;
-
 // The points around one basis point, counter-clockwise.
 struct Ring {
   std::array<std::uint32_t, EdgeNeighbourhood::kMaxPoints> points{};
@@ -21,17 +18,15 @@ struct Ring {
   }
 };
 
-// Nothing at a boundary or if the ring is too long.
-std::optional<Ring> ring_from(const Surface& surface, Halfedge first) {
-  const Kernel& kernel = surface.halfedges.kernel;
-  Ring ring;
+// Fills an empty ring. False at a boundary or if the ring is too long.
+bool walk_ring(const Halfedges& halfedges, Halfedge first, Ring& ring) {
   Halfedge spoke = first;
   do {
-    if (kernel.is_boundary(spoke) || ring.size == ring.points.size()) return std::nullopt;
-    ring.points[ring.size++] = surface.halfedges.point(kernel.to_vertex_handle(spoke));
-    spoke = kernel.opposite_halfedge_handle(kernel.prev_halfedge_handle(spoke));
+    if (halfedges.is_boundary(spoke) || ring.size == ring.points.size()) return false;
+    ring.points[ring.size++] = halfedges.to(spoke);
+    spoke = halfedges.turned(spoke);
   } while (spoke != first);
-  return ring;
+  return true;
 }
 
 // The halfedge a -> b and the spokes from which the rings of a, b, c, d are walked.
@@ -42,22 +37,21 @@ struct Frame {
                                    // c's, d's outer apex
 };
 
-Frame frame_of(const Kernel& kernel, std::uint32_t edge, bool reversed) {
-  const auto handle = OpenMesh::EdgeHandle(static_cast<int>(edge));
-  const Halfedge along = kernel.halfedge_handle(handle, reversed ? 1 : 0);
-  const Halfedge back = kernel.opposite_halfedge_handle(along);
-  const Halfedge from_c = kernel.prev_halfedge_handle(along);
-  const Halfedge from_d = kernel.prev_halfedge_handle(back);
+Frame frame_of(const Halfedges& halfedges, std::uint32_t edge, bool reversed) {
+  const Halfedge along = halfedges.of_edge(edge, reversed ? 1 : 0);
+  const Halfedge back = halfedges.opposite(along);
+  const Halfedge from_c = halfedges.previous(along);
+  const Halfedge from_d = halfedges.previous(back);
   return {along,
           {along, back, from_c, from_d},
-          {from_c, from_d, kernel.next_halfedge_handle(along), kernel.next_halfedge_handle(back)}};
+          {from_c, from_d, halfedges.next(along), halfedges.next(back)}};
 }
 
 std::optional<std::uint32_t> apex_behind(const Surface& surface, Halfedge side) {
-  const Kernel& kernel = surface.halfedges.kernel;
-  const Halfedge across = kernel.opposite_halfedge_handle(side);
-  if (kernel.is_boundary(across)) return std::nullopt;
-  return surface.halfedges.point(kernel.to_vertex_handle(kernel.next_halfedge_handle(across)));
+  const Halfedges& halfedges = surface.halfedges;
+  const Halfedge across = halfedges.opposite(side);
+  if (halfedges.is_boundary(across)) return std::nullopt;
+  return halfedges.to(halfedges.next(across));
 }
 
 bool all_different(std::span<const std::uint32_t> points) {
@@ -70,13 +64,13 @@ bool all_different(std::span<const std::uint32_t> points) {
 }
 
 std::optional<std::array<std::uint32_t, 4>> basis_in(const Surface& surface, const Frame& frame) {
-  const Kernel& kernel = surface.halfedges.kernel;
-  if (kernel.is_boundary(frame.spokes[0]) || kernel.is_boundary(frame.spokes[1])) {
+  const Halfedges& halfedges = surface.halfedges;
+  if (halfedges.is_boundary(frame.spokes[0]) || halfedges.is_boundary(frame.spokes[1])) {
     return std::nullopt;
   }
   std::array<std::uint32_t, 4> basis{};
   for (std::size_t i = 0; i < 4; ++i) {
-    basis[i] = surface.halfedges.point(kernel.from_vertex_handle(frame.spokes[i]));
+    basis[i] = halfedges.from(frame.spokes[i]);
   }
   if (!all_different(basis)) return std::nullopt;
   return basis;
@@ -88,11 +82,12 @@ class Grouping {
   Grouping(const Surface& surface, const Frame& frame, EdgeNeighbourhood& result)
       : surface_(surface), frame_(frame), result_(result) {}
 
-  [[nodiscard]] bool collect(GroupRule rule) {
+  [[nodiscard]] bool collect(GroupRule rule, const GroupVisit& visit) {
     if (rule != GroupRule::OuterApexes && !walk_rings()) return false;
     for (std::size_t k = 0; k < 4; ++k) {
       result_.ends[k + 1] = result_.ends[k];
       if (!collect_group(rule, k) || result_.ends[k + 1] == result_.ends[k]) return false;
+      if (visit && !visit(k, result_.group(k))) return false;
     }
     std::array<std::uint32_t, EdgeNeighbourhood::kMaxPoints + 4> all{};
     const auto groups = result_.all_groups();
@@ -104,9 +99,7 @@ class Grouping {
  private:
   bool walk_rings() {
     for (std::size_t k = 0; k < 4; ++k) {
-      const std::optional<Ring> ring = ring_from(surface_, frame_.spokes[k]);
-      if (!ring) return false;
-      rings_[k] = *ring;
+      if (!walk_ring(surface_.halfedges, frame_.spokes[k], rings_[k])) return false;
     }
     return true;
   }
@@ -153,17 +146,18 @@ class Grouping {
 
 std::optional<std::array<std::uint32_t, 4>> basis_of(const Surface& surface, std::uint32_t edge,
                                                      bool reversed) {
-  return basis_in(surface, frame_of(surface.halfedges.kernel, edge, reversed));
+  return basis_in(surface, frame_of(surface.halfedges, edge, reversed));
 }
 
 std::optional<EdgeNeighbourhood> neighbourhood_of(const Surface& surface, std::uint32_t edge,
-                                                  bool reversed, GroupRule rule) {
-  const Frame frame = frame_of(surface.halfedges.kernel, edge, reversed);
+                                                  bool reversed, GroupRule rule,
+                                                  const GroupVisit& visit) {
+  const Frame frame = frame_of(surface.halfedges, edge, reversed);
   const auto basis = basis_in(surface, frame);
   if (!basis) return std::nullopt;
   EdgeNeighbourhood result;
   result.basis = *basis;
-  if (!Grouping(surface, frame, result).collect(rule)) return std::nullopt;
+  if (!Grouping(surface, frame, result).collect(rule, visit)) return std::nullopt;
   return result;
 }
 

@@ -13,6 +13,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 
@@ -43,11 +44,18 @@ struct EdgeNeighbourhood {
   }
 };
 
-// The neighbourhood of an interior edge, read along its first halfedge or its second. Nothing at a
-// boundary, where a group would be empty, where points coincide, or with more than kMaxPoints.
+// Told of a group as soon as its points are known, groups ascending; false: the neighbourhood is
+// not wanted.
+using GroupVisit = std::function<bool(std::size_t group, std::span<const std::uint32_t> points)>;
+
+// The neighbourhood of an interior edge, read along its first halfedge or its second: the same
+// points either way, group k of the one being group k ^ 1 of the other. Nothing at a boundary,
+// where a group would be empty, where points coincide, with more than kMaxPoints, or if `visit`,
+// where given, does not want it.
 [[nodiscard]] std::optional<EdgeNeighbourhood> neighbourhood_of(const Surface& surface,
                                                                 std::uint32_t edge, bool reversed,
-                                                                GroupRule rule);
+                                                                GroupRule rule,
+                                                                const GroupVisit& visit = {});
 
 // a, b, c, d alone; nothing at a boundary or where two faces share all their points.
 [[nodiscard]] std::optional<std::array<std::uint32_t, 4>> basis_of(const Surface& surface,

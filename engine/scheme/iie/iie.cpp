@@ -4,98 +4,34 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <numbers>
+#include <mutex>
 #include <unordered_map>
-#include <unordered_set>
 
 #include "engine/base/error.h"
+#include "engine/base/once.h"
 #include "engine/base/parallel.h"
 #include "engine/base/random.h"
 #include "engine/geometry/spatial_index.h"
 #include "engine/mesh/edge_length.h"
 #include "engine/scheme/cost_rows.h"
-#include "engine/scheme/iie/ring_signature.h"
+#include "engine/scheme/iie/sites.h"
 #include "engine/scheme/local_cost.h"
 
 namespace triglyph {
 namespace {
 
-constexpr double kMargin = 0.02;  // of the radius: what a shift of the centre may bring near
-constexpr double kVolumeStep =
-    1.3;                            // cells of the volume over those of the area, as their noise is
-constexpr double kFlatCap = 0.5;    // of the radius: so far the cap moves as one
-constexpr double kMaxShift = 0.25;  // of the radius, of the centre
-constexpr double kMaxMove = 0.22;   // of the radius, of a point
-constexpr int kSamples = 17;        // of the invariants along a centre's way
-constexpr double kSharpness = 4.5;  // a cell's border lies three standard deviations of noise away
-constexpr std::size_t kUnitsPerTask = 4;
-constexpr int kMaxQuantiserBits = 16;
+// Cells of the volume over those of the area, as their noise is.
+constexpr double kVolumeStep = 1.3;
+// Of the radius, of a point: there the flank of the cap rises by 34 degrees.
+constexpr double kMaxMove = 0.22;
+// A cell's border lies three standard deviations of noise away: 3^2 / 2.
+constexpr double kSharpness = 4.5;
+constexpr std::size_t kUnitsPerTask = 4;  // balls are dear, and some far dearer than others
+constexpr int kMaxQuantiserBits = 16;     // of Quantiser
+// The mark changes the mean edge length so little that two rounds settle the radius.
 constexpr int kRadiusRounds = 2;
-constexpr int kMaxRefinements = 40;
-constexpr double kAreaPrecision = 1e-13;
-
-// Points within so many rings, ascending, the point itself among them; nothing if a fan is open.
-std::optional<std::vector<std::uint32_t>> points_within(const Halfedges& halfedges,
-                                                        std::uint32_t point, int rings) {
-  std::vector<std::uint32_t> found{point};
-  std::size_t done = 0;
-  for (int ring = 0; ring < rings; ++ring) {
-    const std::size_t end = found.size();
-    for (; done < end; ++done) {
-      const bool closed =
-          visit_ring(halfedges, found[done], [&](std::uint32_t other) { found.push_back(other); });
-      if (!closed) return std::nullopt;
-    }
-    std::sort(found.begin() + static_cast<std::ptrdiff_t>(end), found.end());
-    found.erase(std::unique(found.begin() + static_cast<std::ptrdiff_t>(end), found.end()),
-                found.end());
-    // drop what earlier rings have
-    std::vector<std::uint32_t> known(found.begin(),
-                                     found.begin() + static_cast<std::ptrdiff_t>(end));
-    std::sort(known.begin(), known.end());
-    found.erase(std::remove_if(found.begin() + static_cast<std::ptrdiff_t>(end), found.end(),
-                               [&](std::uint32_t p) {
-                                 return std::binary_search(known.begin(), known.end(), p);
-                               }),
-                found.end());
-  }
-  std::sort(found.begin(), found.end());
-  return found;
-}
-
-// Radius of the balls in model units.
-double radius_on(const Mesh& mesh, const IieOptions& options) {
-  return options.radius > 0 ? options.radius : options.radius_edges * mean_edge_length(mesh);
-}
-
-// A regular mesh has about 7 (r / e)^2 triangles in a ball; where there are far more, points lie in
-// heaps, and to look at all of them from all of them would take for ever.
-std::size_t most_triangles_in(double radius, double edge) {
-  constexpr double kCrowd = 100;
-  const double share = edge > 0 ? radius / edge : 0;
-  return static_cast<std::size_t>(std::min(kCrowd * share * share, 1e9));
-}
-
-// Falls smoothly from 1 within kFlatCap of the radius to 0 at the radius.
-double cap_profile(double distance, double radius) {
-  const double s = std::max(0.0, (distance / radius - kFlatCap) / (1 - kFlatCap));
-  return s < 1 ? (1 - s * s) * (1 - s * s) : 0;
-}
-
-// Area vectors of the triangles around a point, added up.
-Vec3 fan_area(const Surface& surface, std::uint32_t point) {
-  const Vec3& apex = surface.mesh.positions[point];
-  Vec3 sum(0, 0, 0), first(0, 0, 0), last(0, 0, 0);
-  bool started = false;
-  visit_ring(surface.halfedges, point, [&](std::uint32_t other) {
-    const Vec3 arm = surface.mesh.positions[other] - apex;
-    if (started) sum += cross(last, arm);
-    if (!started) first = arm;
-    started = true;
-    last = arm;
-  });
-  return (sum + cross(last, first)) * 0.5;
-}
+// Balls kept from costs to embed, at some 2 kB each: 130 MB at most.
+constexpr std::size_t kMaxKept = std::size_t{1} << 16;
 
 // Of the readings within `distance` of a better one none stays. Ascending by anchor before and
 // after.
@@ -143,126 +79,66 @@ std::vector<Reading> keep_best_apart(std::vector<Reading> readings, std::span<co
 
 }  // namespace
 
-struct IieScheme::Ground {
-  const Surface& surface;
-  double radius;       // of the balls
-  double read_radius;  // with which the marked mesh will be read
-  int centre_rings;
-  std::size_t most_triangles;  // of a ball
-  SpatialIndex index;
-  std::vector<char> unfit;           // triangles at a boundary
-  std::vector<std::uint32_t> sites;  // points that may be centres, ascending
+// The scheme on one surface.
+class IieScheme::Bound final : public BoundScheme {
+ public:
+  // `sites` of the surface's connectivity.
+  Bound(const IieScheme& scheme, const Surface& surface, std::shared_ptr<const IieSites> sites)
+      : scheme_(scheme),
+        surface_(surface),
+        sites_(std::move(sites)),
+        edge_(mean_edge_length(surface.mesh)),
+        radius_(scheme.options_.radius > 0 ? scheme.options_.radius
+                                           : scheme.options_.radius_edges * edge_),
+        index_(surface.mesh.positions, surface.mesh.triangles),
+        ground_{surface_,
+                index_,
+                sites_->at_boundary,
+                radius_,
+                scheme.options_.centre_rings,
+                most_triangles_in(radius_, edge_)} {}
 
-  Ground(const Surface& on, const IieOptions& options, std::uint64_t seed)
-      : surface(on),
-        radius(radius_on(on.mesh, options)),
-        read_radius(radius),
-        centre_rings(options.centre_rings),
-        most_triangles(most_triangles_in(radius, mean_edge_length(on.mesh))),
-        index(on.mesh.positions, on.mesh.triangles),
-        unfit(on.mesh.triangles.size(), 0) {
-    const auto& kernel = surface.halfedges.kernel;
-    for (std::size_t t = 0; t < unfit.size(); ++t) {
-      auto side = kernel.halfedge_handle(OpenMesh::FaceHandle(static_cast<int>(t)));
-      for (int i = 0; i < 3; ++i) {
-        if (kernel.is_boundary(kernel.opposite_halfedge_handle(side))) unfit[t] = 1;
-        side = kernel.next_halfedge_handle(side);
-      }
-    }
-    find_sites(options.site_rings, seed);
+  [[nodiscard]] UnitSet find_units() const override;
+  [[nodiscard]] CostMatrix costs(const UnitSet& units, std::span<const std::uint32_t> chosen,
+                                 std::span<const Word> words) const override;
+  [[nodiscard]] Embedding embed(const UnitSet& units, std::span<const Placement> placements,
+                                std::span<const Word> words) const override;
+  [[nodiscard]] std::vector<Reading> read() const override;
+  [[nodiscard]] PointLists points_of(std::span<const std::uint32_t> anchors) const override;
+  [[nodiscard]] std::unique_ptr<BoundScheme> moved_to(const Surface& moved) const override {
+    return std::make_unique<Bound>(scheme_, moved, sites_);
+  }
+  [[nodiscard]] double cell_size() const override { return scheme_.options_.step * edge_; }
+
+ private:
+  using Balls = std::vector<std::optional<SampledBall>>;
+  using KeptBalls = std::unordered_map<std::uint32_t, SampledBall>;  // by anchor
+
+  [[nodiscard]] std::shared_ptr<const KeptBalls> kept() const {
+    const std::lock_guard lock(kept_mutex_);
+    return kept_;
+  }
+  void keep(const UnitSet& units, std::span<const std::uint32_t> chosen, Balls balls) const;
+  [[nodiscard]] Balls balls_of(const UnitSet& units, std::span<const Placement> placements) const;
+  [[nodiscard]] Embedding embed_in(Balls& balls, double read_radius,
+                                   std::span<const Placement> placements,
+                                   std::span<const Word> words) const;
+  [[nodiscard]] std::optional<CapMoves> exact_moves(SampledBall& sampled, const Word& word) const;
+  [[nodiscard]] const LocalCost& local_cost() const {
+    return local_cost_.get([&] { return LocalCost(surface_, scheme_.options_.cost); });
   }
 
-  void find_sites(int rings, std::uint64_t seed) {
-    const std::size_t points = surface.mesh.positions.size();
-    const auto signatures = ring_signatures(surface.halfedges, points, seed);
-    sites = parallel_collect<std::uint32_t>(
-        points, [&](std::size_t i, std::vector<std::uint32_t>& out) {
-          const auto point = static_cast<std::uint32_t>(i);
-          if (signatures[point] == 0) return;
-          const auto beats_all_within = [&](int so_many) {
-            const auto near = points_within(surface.halfedges, point, so_many);
-            return near && std::all_of(near->begin(), near->end(), [&](std::uint32_t other) {
-                     return signatures[other] <= signatures[point];
-                   });
-          };
-          // nearly all points fail already against their neighbours
-          if (beats_all_within(std::min(rings, 1)) && beats_all_within(rings)) out.push_back(point);
-        });
-  }
-
-  [[nodiscard]] std::optional<Vec3> centre_at(std::uint32_t anchor) const {
-    const auto points = points_within(surface.halfedges, anchor, centre_rings);
-    if (!points) return std::nullopt;
-    return mean_of(*points);
-  }
-
-  [[nodiscard]] Vec3 mean_of(std::span<const std::uint32_t> points) const {
-    Vec3 sum(0, 0, 0);
-    for (const std::uint32_t point : points) sum += surface.mesh.positions[point];
-    return sum / static_cast<double>(points.size());
-  }
-
-  [[nodiscard]] bool sample(Ball& ball) const;
-  [[nodiscard]] BallInvariants invariants(std::span<const std::uint32_t> near,
-                                          const Vec3& centre) const {
-    return ball_invariants(surface.mesh.positions, surface.mesh.triangles, near, centre,
-                           read_radius);
-  }
+  const IieScheme& scheme_;
+  const Surface surface_;
+  std::shared_ptr<const IieSites> sites_;
+  double edge_;  // mean length
+  double radius_;
+  SpatialIndex index_;
+  BallGround ground_;
+  Once<LocalCost> local_cost_;
+  mutable std::mutex kept_mutex_;
+  mutable std::shared_ptr<const KeptBalls> kept_ = std::make_shared<KeptBalls>();
 };
-
-struct IieScheme::Ball {
-  Vec3 centre{0, 0, 0};
-  Vec3 normal{0, 0, 0};
-  double radius = 0;
-  std::vector<std::uint32_t> near;  // triangles that the ball meets or nearly meets
-  std::vector<std::uint32_t> cap;   // points to be moved
-  std::vector<double> profile;      // of the cap's points
-  std::vector<char> is_centres;     // does the centre depend on the point?
-  double centre_gain = 0;           // shift of the centre for a move of the whole cap
-  double lift_all = 0;              // change of the volume share for a move of the whole cap, a
-  double lift_outer = 0;            // model unit; or of all but the centre's points
-  std::array<BallInvariants, kSamples> samples{};  // along the normal, the cap unmoved
-
-  [[nodiscard]] static double shift_of(int sample, double radius) {
-    return kMaxShift * radius * (2.0 * sample / (kSamples - 1) - 1);
-  }
-  [[nodiscard]] BallInvariants at(double shift) const {
-    const double place = (shift / (kMaxShift * radius) + 1) / 2 * (kSamples - 1);
-    const auto below = static_cast<std::size_t>(std::clamp(place, 0.0, kSamples - 1.001));
-    const double t = place - static_cast<double>(below);
-    const BallInvariants& a = samples[below];
-    const BallInvariants& b = samples[below + 1];
-    return {a.area + t * (b.area - a.area), a.volume + t * (b.volume - a.volume)};
-  }
-  [[nodiscard]] double move_of(std::size_t i, const Moves& moves) const {
-    return profile[i] * (moves.all + (is_centres[i] != 0 ? 0 : moves.outer));
-  }
-
-  double most_inner = 0, most_outer = 0;        // of the profile, centre's points and others
-  double squares_inner = 0, squares_outer = 0;  // sums of its squares
-  [[nodiscard]] double farthest(const Moves& moves) const {
-    return std::max(most_inner * std::abs(moves.all),
-                    most_outer * std::abs(moves.all + moves.outer));
-  }
-  [[nodiscard]] double rms(const Moves& moves) const {
-    const double outer = moves.all + moves.outer;
-    return std::sqrt((squares_inner * moves.all * moves.all + squares_outer * outer * outer) /
-                     static_cast<double>(cap.size()));
-  }
-};
-
-// False where too many triangles lie about the centre.
-bool IieScheme::Ground::sample(Ball& ball) const {
-  auto near =
-      index.triangles_in_ball(ball.centre, ball.radius * (1 + kMaxShift), 2 * most_triangles);
-  if (!near) return false;
-  ball.near = std::move(*near);
-  for (int i = 0; i < kSamples; ++i) {
-    const Vec3 centre = ball.centre + ball.normal * Ball::shift_of(i, ball.radius);
-    ball.samples[static_cast<std::size_t>(i)] = invariants(ball.near, centre);
-  }
-  return true;
-}
 
 IieScheme::IieScheme(const WordCode& code, const IieOptions& options)
     : options_(options),
@@ -294,123 +170,27 @@ IieScheme::IieScheme(const WordCode& code, const IieOptions& options)
   }
 }
 
-// Points reached from the anchor whose triangles all lie well within the ball, ascending.
-std::vector<std::uint32_t> IieScheme::cap_of(const Ground& ground, std::uint32_t anchor,
-                                             const Vec3& centre) {
-  const Surface& surface = ground.surface;
-  const double inside = ground.radius * (1 - kMargin);
-  const auto lies_inside = [&](std::uint32_t point) {
-    return (surface.mesh.positions[point] - centre).sqrnorm() < inside * inside;
-  };
-  std::vector<std::uint32_t> cap;
-  std::unordered_set<std::uint32_t> seen{anchor};
-  std::vector<std::uint32_t> queue{anchor};
-  for (std::size_t next = 0; next < queue.size(); ++next) {
-    std::vector<std::uint32_t> ring;
-    const bool closed = visit_ring(surface.halfedges, queue[next],
-                                   [&](std::uint32_t other) { ring.push_back(other); });
-    if (!closed || !std::all_of(ring.begin(), ring.end(), lies_inside)) continue;
-    cap.push_back(queue[next]);
-    for (const std::uint32_t other : ring) {
-      if (seen.insert(other).second) queue.push_back(other);
-    }
-  }
-  std::sort(cap.begin(), cap.end());
-  return cap;
+std::unique_ptr<BoundScheme> IieScheme::bind(const Surface& surface) const {
+  return std::make_unique<Bound>(
+      *this, surface,
+      std::make_shared<IieSites>(find_sites(surface.halfedges, surface.mesh.positions.size(),
+                                            options_.site_rings, site_seed_)));
 }
 
-// How far each point of the cap follows a move, and what that does to centre and volume.
-void IieScheme::weigh_cap(const Ground& ground, std::span<const std::uint32_t> centre_points,
-                          Ball& ball) {
-  const double volume = 4.0 / 3.0 * std::numbers::pi * std::pow(ground.read_radius, 3);
-  for (const std::uint32_t point : ball.cap) {
-    const double distance = (ground.surface.mesh.positions[point] - ball.centre).norm();
-    const double profile = cap_profile(distance, ground.radius);
-    const bool is_centres = std::binary_search(centre_points.begin(), centre_points.end(), point);
-    const double lift = profile * dot(fan_area(ground.surface, point), ball.normal) / (3 * volume);
-    ball.profile.push_back(profile);
-    ball.is_centres.push_back(is_centres ? 1 : 0);
-    ball.lift_all += lift;
-    (is_centres ? ball.squares_inner : ball.squares_outer) += profile * profile;
-    double& most = is_centres ? ball.most_inner : ball.most_outer;
-    most = std::max(most, profile);
-    if (is_centres) {
-      ball.centre_gain += profile / static_cast<double>(centre_points.size());
-    } else {
-      ball.lift_outer += lift;
-    }
-  }
-}
-
-std::optional<IieScheme::Ball> IieScheme::ball_at(const Ground& ground,
-                                                  std::uint32_t anchor) const {
-  const auto centre_points = points_within(ground.surface.halfedges, anchor, options_.centre_rings);
-  if (!centre_points) return std::nullopt;
-  Ball ball;
-  ball.radius = ground.radius;
-  ball.centre = ground.mean_of(*centre_points);
-  for (const std::uint32_t point : *centre_points) ball.normal += fan_area(ground.surface, point);
-  const double length = ball.normal.norm();
-  if (!(length > 0)) return std::nullopt;
-  ball.normal /= length;
-
-  auto near = ground.index.triangles_in_ball(ball.centre, ground.radius * (1 + kMargin),
-                                             ground.most_triangles);
-  if (!near) return std::nullopt;
-  ball.near = std::move(*near);
-  const bool at_boundary = std::any_of(ball.near.begin(), ball.near.end(),
-                                       [&](std::uint32_t t) { return ground.unfit[t] != 0; });
-  if (at_boundary) return std::nullopt;
-
-  ball.cap = cap_of(ground, anchor, ball.centre);
-  if (!std::includes(ball.cap.begin(), ball.cap.end(), centre_points->begin(),
-                     centre_points->end())) {
-    return std::nullopt;
-  }
-  weigh_cap(ground, *centre_points, ball);
-  if (!(ball.lift_outer > 0 && ball.lift_all > 0)) return std::nullopt;  // too crumpled
-  return ball;
-}
-
-// Where the centre must go for this area, as near as can be; by the samples.
-std::optional<double> IieScheme::centre_shift(const Ball& ball, double area) const {
-  constexpr int kMiddle = (kSamples - 1) / 2;
-  for (int away = 0; away < kMiddle; ++away) {
-    for (const int first : {kMiddle + away, kMiddle - away - 1}) {
-      const auto at = static_cast<std::size_t>(first);
-      const double here = ball.samples[at].area - area;
-      const double there = ball.samples[at + 1].area - area;
-      if (here * there > 0 || here == there) continue;
-      const double from = Ball::shift_of(first, ball.radius);
-      const double to = Ball::shift_of(first + 1, ball.radius);
-      return from + (to - from) * here / (here - there);
-    }
-  }
-  return std::nullopt;
-}
-
-// The moves that bring the volume to this share, the centre being where it is and the volume with
-// the cap unmoved being known.
-IieScheme::Moves IieScheme::moves_to(const Ball& ball, double shift, double volume, double wanted) {
-  Moves moves;
-  moves.all = shift / ball.centre_gain;
-  moves.outer = (wanted - volume - moves.all * ball.lift_all) / ball.lift_outer;
-  return moves;
-}
-
-std::optional<IieScheme::Plan> IieScheme::plan(const Ball& ball, const Word& word) const {
+std::optional<IieScheme::Plan> IieScheme::plan(SampledBall& sampled, const Word& word) const {
+  const Ball& ball = sampled.ball();
   std::optional<Plan> best;
   double best_move = kMaxMove * ball.radius;
-  const double area = ball.at(0).area;
+  const double area = sampled.interpolated(0).area;
   const double near_area = area_.nearest_centre(area, area_bits(word));
   for (const double wanted_area : {near_area, area_.second_centre(area, near_area)}) {
-    const std::optional<double> shift = centre_shift(ball, wanted_area);
+    const std::optional<double> shift = sampled.shift_for_area(wanted_area);
     if (!shift) continue;
-    const double volume = ball.at(*shift).volume;
+    const double volume = sampled.interpolated(*shift).volume;
     const double lifted = volume + *shift / ball.centre_gain * ball.lift_all;
     const double near_volume = volume_.nearest_centre(lifted, word.part);
     for (const double wanted : {near_volume, volume_.second_centre(lifted, near_volume)}) {
-      const Moves moves = moves_to(ball, *shift, volume, wanted);
+      const CapMoves moves = sampled.moves_to(*shift, volume, wanted);
       if (!(ball.farthest(moves) < best_move)) continue;
       best_move = ball.farthest(moves);
       best = Plan{wanted_area, wanted, *shift, moves};
@@ -419,82 +199,8 @@ std::optional<IieScheme::Plan> IieScheme::plan(const Ball& ball, const Word& wor
   return best;
 }
 
-// From the samples' answer to the exact one: regula falsi (Illinois) about the planned shift.
-std::optional<IieScheme::Moves> IieScheme::refine(const Ground& ground, const Ball& ball,
-                                                  const Plan& plan) {
-  const auto excess = [&](double shift) {
-    return ground.invariants(ball.near, ball.centre + ball.normal * shift).area - plan.area;
-  };
-  const double spacing = 2 * kMaxShift * ball.radius / (kSamples - 1);
-  double low = plan.shift - spacing, high = plan.shift + spacing;
-  double at_low = excess(low), at_high = excess(high);
-  if (at_low * at_high > 0) return std::nullopt;
-  double shift = plan.shift;
-  int same_side = 0;
-  for (int step = 0; step < kMaxRefinements; ++step) {
-    const double value = excess(shift);
-    if (std::abs(value) < kAreaPrecision) break;
-    const bool replaces_low = value * at_high < 0;
-    (replaces_low ? low : high) = shift;
-    (replaces_low ? at_low : at_high) = value;
-    same_side = replaces_low ? std::max(1, same_side + 1) : std::min(-1, same_side - 1);
-    if (same_side > 1) at_high /= 2;
-    if (same_side < -1) at_low /= 2;
-    shift = (low * at_high - high * at_low) / (at_high - at_low);
-  }
-  const double volume = ground.invariants(ball.near, ball.centre + ball.normal * shift).volume;
-  return moves_to(ball, shift, volume, plan.volume);
-}
-
-UnitSet IieScheme::find_units(const Surface& surface) const {
-  const Ground ground(surface, options_, site_seed_);
-  struct Found {
-    std::uint32_t anchor;
-    std::vector<std::uint32_t> moved, read;
-  };
-  std::vector<Found> found(ground.sites.size());
-  parallel_for(
-      ground.sites.size(),
-      [&](std::size_t i) {
-        std::optional<Ball> ball = ball_at(ground, ground.sites[i]);
-        if (!ball) return;
-        std::vector<std::uint32_t> read = ball->cap;
-        for (const std::uint32_t triangle : ball->near) {
-          const Triangle& corners = surface.mesh.triangles[triangle];
-          read.insert(read.end(), corners.begin(), corners.end());
-        }
-        std::sort(read.begin(), read.end());
-        read.erase(std::unique(read.begin(), read.end()), read.end());
-        found[i] = {ground.sites[i], std::move(ball->cap), std::move(read)};
-      },
-      kUnitsPerTask);
-  UnitSet units;
-  for (const Found& unit : found) {
-    if (unit.moved.empty()) continue;
-    units.anchors.push_back(unit.anchor);
-    units.moved.append(unit.moved);
-    units.read.append(unit.read);
-  }
-  return units;
-}
-
-CostMatrix IieScheme::costs(const Surface& surface, const UnitSet& units,
-                            std::span<const std::uint32_t> chosen,
-                            std::span<const Word> words) const {
-  const Ground ground(surface, options_, site_seed_);
-  const LocalCost local(surface, options_.cost);
-  return fill_cost_rows(chosen.size(), words.size(), [&](std::size_t row, std::span<float> costs) {
-    std::optional<Ball> ball = ball_at(ground, units.anchors[chosen[row]]);
-    if (!ball || !ground.sample(*ball)) return;
-    for (std::size_t word = 0; word < costs.size(); ++word) {
-      const std::optional<Plan> planned = plan(*ball, words[word]);
-      if (planned) costs[word] = cost_of(surface.mesh, local, *ball, planned->moves);
-    }
-  });
-}
-
 float IieScheme::cost_of(const Mesh& mesh, const LocalCost& local, const Ball& ball,
-                         const Moves& moves) const {
+                         const CapMoves& moves) const {
   if (options_.cost == CostFunction::Displacement) return static_cast<float>(ball.farthest(moves));
   if (options_.cost == CostFunction::Rms) return static_cast<float>(ball.rms(moves));
   std::vector<Move> cap;
@@ -505,39 +211,126 @@ float IieScheme::cost_of(const Mesh& mesh, const LocalCost& local, const Ball& b
   return local.of_part(cap);
 }
 
-Embedding IieScheme::embed(const Surface& surface, const UnitSet& units,
-                           std::span<const Placement> placements,
-                           std::span<const Word> words) const {
-  Ground ground(surface, options_, site_seed_);
-  Embedding embedding = embed_on(ground, units, placements, words);
-  if (options_.radius > 0) return embedding;
+UnitSet IieScheme::Bound::find_units() const {
+  struct Found {
+    std::vector<std::uint32_t> moved, read;
+  };
+  std::vector<Found> found(sites_->points.size());
+  parallel_for(
+      found.size(),
+      [&](std::size_t i) {
+        std::optional<Ball> ball = ball_at(ground_, sites_->points[i]);
+        if (!ball) return;
+        std::vector<std::uint32_t> read = ball->cap;
+        for (const std::uint32_t triangle : ball->near) {
+          const Triangle& corners = surface_.mesh.triangles[triangle];
+          read.insert(read.end(), corners.begin(), corners.end());
+        }
+        std::sort(read.begin(), read.end());
+        read.erase(std::unique(read.begin(), read.end()), read.end());
+        found[i] = {std::move(ball->cap), std::move(read)};
+      },
+      kUnitsPerTask);
+  UnitSet units;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (found[i].moved.empty()) continue;
+    units.anchors.push_back(sites_->points[i]);
+    units.moved.append(std::span<const std::uint32_t>(found[i].moved));
+    units.read.append(std::span<const std::uint32_t>(found[i].read));
+  }
+  return units;
+}
+
+CostMatrix IieScheme::Bound::costs(const UnitSet& units, std::span<const std::uint32_t> chosen,
+                                   std::span<const Word> words) const {
+  const LocalCost& local = local_cost();
+  const bool keeps = chosen.size() <= kMaxKept;
+  Balls balls(keeps ? chosen.size() : 0);
+  CostMatrix matrix =
+      fill_cost_rows(chosen.size(), words.size(), [&](std::size_t row, std::span<float> costs) {
+        std::optional<SampledBall> sampled = SampledBall::at(ground_, units.anchors[chosen[row]]);
+        if (!sampled) return;
+        for (std::size_t word = 0; word < costs.size(); ++word) {
+          const std::optional<Plan> planned = scheme_.plan(*sampled, words[word]);
+          if (!planned) continue;
+          costs[word] = scheme_.cost_of(surface_.mesh, local, sampled->ball(), planned->moves);
+        }
+        if (keeps) balls[row] = std::move(sampled);
+      });
+  if (keeps) keep(units, chosen, std::move(balls));
+  return matrix;
+}
+
+// In place of those of an earlier call: layout has chosen the units that will be embedded.
+void IieScheme::Bound::keep(const UnitSet& units, std::span<const std::uint32_t> chosen,
+                            Balls balls) const {
+  auto kept = std::make_shared<KeptBalls>();
+  kept->reserve(balls.size());
+  for (std::size_t row = 0; row < balls.size(); ++row) {
+    if (balls[row]) kept->emplace(units.anchors[chosen[row]], std::move(*balls[row]));
+  }
+  const std::lock_guard lock(kept_mutex_);
+  kept_ = std::move(kept);
+}
+
+IieScheme::Bound::Balls IieScheme::Bound::balls_of(const UnitSet& units,
+                                                   std::span<const Placement> placements) const {
+  const std::shared_ptr<const KeptBalls> known = kept();
+  Balls balls(placements.size());
+  parallel_for(
+      placements.size(),
+      [&](std::size_t i) {
+        const std::uint32_t anchor = units.anchors[placements[i].unit];
+        const auto at = known->find(anchor);
+        if (at != known->end()) {
+          balls[i] = at->second;
+        } else {
+          balls[i] = SampledBall::at(ground_, anchor);
+        }
+      },
+      kUnitsPerTask);
+  return balls;
+}
+
+Embedding IieScheme::Bound::embed(const UnitSet& units, std::span<const Placement> placements,
+                                  std::span<const Word> words) const {
+  Balls balls = balls_of(units, placements);
+  Embedding embedding = embed_in(balls, radius_, placements, words);
+  if (scheme_.options_.radius > 0) return embedding;
   // the mark changes the mean edge length a little, and with it the radius it will be read with
   for (int round = 0; round < kRadiusRounds; ++round) {
-    ground.read_radius = radius_on({embedding.positions, surface.mesh.triangles}, options_);
-    embedding = embed_on(ground, units, placements, words);
+    const double radius = scheme_.options_.radius_edges *
+                          mean_edge_length({embedding.positions, surface_.mesh.triangles});
+    embedding = embed_in(balls, radius, placements, words);
   }
   return embedding;
 }
 
-Embedding IieScheme::embed_on(const Ground& ground, const UnitSet& units,
-                              std::span<const Placement> placements,
-                              std::span<const Word> words) const {
-  Embedding embedding{ground.surface.mesh.positions, {}};
-  const auto embed_unit = [&](const Placement& placement) {
-    std::optional<Ball> ball = ball_at(ground, units.anchors[placement.unit]);
-    if (!ball || !ground.sample(*ball)) return false;
-    const std::optional<Plan> planned = plan(*ball, words[placement.word]);
-    if (!planned) return false;
-    const std::optional<Moves> moves = refine(ground, *ball, *planned);
+std::optional<CapMoves> IieScheme::Bound::exact_moves(SampledBall& sampled,
+                                                      const Word& word) const {
+  const std::optional<Plan> planned = scheme_.plan(sampled, word);
+  if (!planned) return std::nullopt;
+  return sampled.refined(planned->shift, planned->area, planned->volume);
+}
+
+Embedding IieScheme::Bound::embed_in(Balls& balls, double read_radius,
+                                     std::span<const Placement> placements,
+                                     std::span<const Word> words) const {
+  Embedding embedding{surface_.mesh.positions, {}};
+  const auto embed_unit = [&](std::optional<SampledBall>& sampled, const Word& word) {
+    if (!sampled || !sampled->set_read_radius(read_radius)) return false;
+    const std::optional<CapMoves> moves = exact_moves(*sampled, word);
     if (!moves) return false;
-    for (std::size_t i = 0; i < ball->cap.size(); ++i) {
-      embedding.positions[ball->cap[i]] += ball->normal * ball->move_of(i, *moves);
+    const Ball& ball = sampled->ball();
+    for (std::size_t i = 0; i < ball.cap.size(); ++i) {
+      embedding.positions[ball.cap[i]] += ball.normal * ball.move_of(i, *moves);
     }
     return true;
   };
   std::vector<char> placed(placements.size());
   parallel_for(
-      placements.size(), [&](std::size_t i) { placed[i] = embed_unit(placements[i]) ? 1 : 0; },
+      placements.size(),
+      [&](std::size_t i) { placed[i] = embed_unit(balls[i], words[placements[i].word]) ? 1 : 0; },
       kUnitsPerTask);
   for (std::uint32_t i = 0; i < placements.size(); ++i) {
     if (placed[i] == 0) embedding.failed.push_back(i);
@@ -545,51 +338,52 @@ Embedding IieScheme::embed_on(const Ground& ground, const UnitSet& units,
   return embedding;
 }
 
-std::vector<Reading> IieScheme::read(const Surface& surface) const {
-  const Ground ground(surface, options_, site_seed_);
-  std::vector<Vec3> centres(ground.sites.size());
+std::vector<Reading> IieScheme::Bound::read() const {
+  const std::vector<std::uint32_t>& sites = sites_->points;
+  std::vector<Vec3> centres(sites.size());
   parallel_for(
       centres.size(),
-      [&](std::size_t i) { centres[i] = ground.centre_at(ground.sites[i]).value(); },
+      [&](std::size_t i) {
+        centres[i] = ground_.mean_of(
+            points_within(surface_.halfedges, sites[i], ground_.centre_rings).value());
+      },
       kUnitsPerTask);
   const std::vector<BallInvariants> invariants =
-      all_ball_invariants(surface.mesh.positions, surface.mesh.triangles, ground.unfit, centres,
-                          ground.radius, ground.most_triangles);
-  const std::uint32_t marker_mask = (1U << marker_bits_) - 1;
+      all_ball_invariants(surface_.mesh.positions, surface_.mesh.triangles, index_,
+                          sites_->at_boundary, centres, radius_, ground_.most_triangles);
+  const std::uint32_t marker_mask = (1U << scheme_.marker_bits_) - 1;
   std::vector<Reading> readings;
   std::vector<Vec3> places;
   for (std::size_t i = 0; i < centres.size(); ++i) {
-    const Quantiser::Cell area = area_.cell_of(invariants[i].area);
-    const Quantiser::Cell volume = volume_.cell_of(invariants[i].volume);
+    const Quantiser::Cell area = scheme_.area_.cell_of(invariants[i].area);
+    const Quantiser::Cell volume = scheme_.volume_.cell_of(invariants[i].volume);
     const bool crosses = invariants[i].area > 0 && invariants[i].area < 1;  // false for a NaN
-    if (!crosses || (area.bits & marker_mask) != marker_) continue;
+    if (!crosses || (area.bits & marker_mask) != scheme_.marker_) continue;
     const float squared = area.distance * area.distance + volume.distance * volume.distance;
     Reading reading;
-    reading.anchor = ground.sites[i];
-    reading.word = {area.bits >> marker_bits_, volume.bits};
+    reading.anchor = sites[i];
+    reading.word = {area.bits >> scheme_.marker_bits_, volume.bits};
     reading.worst_offset = std::max(area.distance, volume.distance);
     reading.weight = static_cast<float>(std::exp(-kSharpness * double{squared}));
     reading.bit_weights.fill(1);
     readings.push_back(reading);
     places.push_back(centres[i]);
   }
-  return keep_best_apart(std::move(readings), places, ground.radius);
+  return keep_best_apart(std::move(readings), places, radius_);
 }
 
 // The points within the ball; where that is no ball any more, those of its centre.
-PointLists IieScheme::points_of(const Surface& surface,
-                                std::span<const std::uint32_t> anchors) const {
-  const Ground ground(surface, options_, site_seed_);
+PointLists IieScheme::Bound::points_of(std::span<const std::uint32_t> anchors) const {
   PointLists lists;
   for (const std::uint32_t anchor : anchors) {
     std::vector<std::uint32_t> points;
-    if (anchor < surface.mesh.positions.size()) {
-      points = points_within(surface.halfedges, anchor, options_.centre_rings)
+    if (anchor < surface_.mesh.positions.size()) {
+      points = points_within(surface_.halfedges, anchor, scheme_.options_.centre_rings)
                    .value_or(std::vector<std::uint32_t>{anchor});
-      const auto near = ground.index.triangles_in_ball(ground.mean_of(points), ground.radius,
-                                                       ground.most_triangles);
+      const auto near =
+          ground_.index.triangles_in_ball(ground_.mean_of(points), radius_, ground_.most_triangles);
       for (const std::uint32_t triangle : near.value_or(std::vector<std::uint32_t>{})) {
-        const Triangle& corners = surface.mesh.triangles[triangle];
+        const Triangle& corners = surface_.mesh.triangles[triangle];
         points.insert(points.end(), corners.begin(), corners.end());
       }
     }

@@ -28,8 +28,8 @@
 
 #include <optional>
 
+#include "engine/scheme/iie/ball.h"
 #include "engine/scheme/iie/iie_options.h"
-#include "engine/scheme/iie/integral_invariants.h"
 #include "engine/scheme/quantiser.h"
 #include "engine/scheme/scheme.h"
 
@@ -43,54 +43,25 @@ class IieScheme final : public Scheme {
   // radius or number of rings out of range.
   IieScheme(const WordCode& code, const IieOptions& options);
 
-  // Anchors are points. O(points * triangles a ball), parallel.
-  [[nodiscard]] UnitSet find_units(const Surface& surface) const override;
-
-  // From a table of the invariants along each centre's way: good to about a hundredth of a cell.
-  // O(chosen * (triangles a ball + words)), parallel over units.
-  [[nodiscard]] CostMatrix costs(const Surface& surface, const UnitSet& units,
-                                 std::span<const std::uint32_t> chosen,
-                                 std::span<const Word> words) const override;
-
-  [[nodiscard]] Embedding embed(const Surface& surface, const UnitSet& units,
-                                std::span<const Placement> placements,
-                                std::span<const Word> words) const override;
-
-  // Of several readings within one ball only the best centred stays: two units never lie so close.
-  [[nodiscard]] std::vector<Reading> read(const Surface& surface) const override;
-
-  [[nodiscard]] PointLists points_of(const Surface& surface,
-                                     std::span<const std::uint32_t> anchors) const override;
+  // Anchors are points. All calls are parallel: find_units and read take O(sites * triangles a
+  // ball), costs O(chosen * (triangles a ball + words)). Costs come from a table of the invariants
+  // along each centre's way and are good to about a hundredth of a cell; the balls of the units
+  // asked about are kept for embed, some 2 kB each. Of several readings within one ball only the
+  // best centred stays: two units never lie so close.
+  [[nodiscard]] std::unique_ptr<BoundScheme> bind(const Surface& surface) const override;
 
  private:
-  struct Ground;  // a surface with all that is worked out once for it
-  struct Ball;    // one unit, ready to be moved
-  struct Moves {
-    double all = 0;    // of the whole cap along n, model units
-    double outer = 0;  // of the cap without the centre's points
-  };
+  class Bound;
   struct Plan {
     double area = 0;  // shares to be reached
     double volume = 0;
     double shift = 0;  // of the centre along n, model units
-    Moves moves;
+    CapMoves moves;
   };
 
-  [[nodiscard]] Embedding embed_on(const Ground& ground, const UnitSet& units,
-                                   std::span<const Placement> placements,
-                                   std::span<const Word> words) const;
-  [[nodiscard]] std::optional<Ball> ball_at(const Ground& ground, std::uint32_t anchor) const;
-  [[nodiscard]] static std::vector<std::uint32_t> cap_of(const Ground& ground, std::uint32_t anchor,
-                                                         const Vec3& centre);
-  static void weigh_cap(const Ground& ground, std::span<const std::uint32_t> centre_points,
-                        Ball& ball);
-  [[nodiscard]] std::optional<double> centre_shift(const Ball& ball, double area) const;
-  [[nodiscard]] static Moves moves_to(const Ball& ball, double shift, double volume, double wanted);
-  [[nodiscard]] std::optional<Plan> plan(const Ball& ball, const Word& word) const;
+  [[nodiscard]] std::optional<Plan> plan(SampledBall& sampled, const Word& word) const;
   [[nodiscard]] float cost_of(const Mesh& mesh, const LocalCost& local, const Ball& ball,
-                              const Moves& moves) const;
-  [[nodiscard]] static std::optional<Moves> refine(const Ground& ground, const Ball& ball,
-                                                   const Plan& plan);
+                              const CapMoves& moves) const;
   [[nodiscard]] std::uint32_t area_bits(const Word& word) const {
     return marker_ | word.subscript << marker_bits_;
   }

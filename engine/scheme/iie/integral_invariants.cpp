@@ -12,7 +12,6 @@
 #include <numbers>
 
 #include "engine/base/parallel.h"
-#include "engine/geometry/spatial_index.h"
 
 namespace triglyph {
 namespace {
@@ -175,13 +174,10 @@ BallInvariants ball_invariants(std::span<const Vec3> positions, std::span<const 
   return {share, share + cones / ball};
 }
 
-std::vector<BallInvariants> all_ball_invariants(std::span<const Vec3> positions,
-                                                std::span<const Triangle> mesh,
-                                                std::span<const char> unfit,
-                                                std::span<const Vec3> centres, double radius,
-                                                std::size_t most) {
+std::vector<BallInvariants> all_ball_invariants(
+    std::span<const Vec3> positions, std::span<const Triangle> mesh, const SpatialIndex& index,
+    std::span<const char> unfit, std::span<const Vec3> centres, double radius, std::size_t most) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  const SpatialIndex index(positions, mesh);
   std::vector<BallInvariants> invariants(centres.size(), {kNone, kNone});
   parallel_for(
       centres.size(),

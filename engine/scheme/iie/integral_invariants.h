@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/geometry/spatial_index.h"
 #include "engine/mesh/mesh.h"
 
 namespace triglyph {
@@ -29,11 +30,9 @@ struct BallInvariants {
 
 // The same about every centre; NaN where the ball meets a triangle marked as unfit (at a boundary,
 // say), or more than `most` triangles. `unfit`: one mark a triangle. Parallel, the same for any
-// number of threads. O(centres * triangles a ball + t log t).
-[[nodiscard]] std::vector<BallInvariants> all_ball_invariants(std::span<const Vec3> positions,
-                                                              std::span<const Triangle> mesh,
-                                                              std::span<const char> unfit,
-                                                              std::span<const Vec3> centres,
-                                                              double radius, std::size_t most);
+// number of threads. `index` of the same triangles. O(centres * triangles a ball).
+[[nodiscard]] std::vector<BallInvariants> all_ball_invariants(
+    std::span<const Vec3> positions, std::span<const Triangle> mesh, const SpatialIndex& index,
+    std::span<const char> unfit, std::span<const Vec3> centres, double radius, std::size_t most);
 
 }  // namespace triglyph

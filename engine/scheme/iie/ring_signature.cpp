@@ -47,7 +47,7 @@ std::vector<std::uint64_t> ring_signatures(const Halfedges& halfedges, std::size
         if (closed) colours[i] = random_bits(seed, 2, valence) | 1;
       },
       kPointsPerTask);
-  for (const std::uint32_t copied : halfedges.copied_point) colours[copied] = 0;
+  for (const std::uint32_t copied : halfedges.copied_points()) colours[copied] = 0;
   return refine(halfedges, refine(halfedges, colours));
 }
 

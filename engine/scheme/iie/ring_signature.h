@@ -19,14 +19,13 @@ namespace triglyph {
 // clockwise. Returns false, and stops, if the fan is open.
 template <typename Visit>
 bool visit_ring(const Halfedges& halfedges, std::uint32_t point, const Visit& visit) {
-  const auto& kernel = halfedges.kernel;
-  const auto first = kernel.halfedge_handle(OpenMesh::VertexHandle(static_cast<int>(point)));
-  if (!first.is_valid()) return false;
-  auto spoke = first;
+  const Halfedge first = halfedges.outgoing(point);
+  if (first == kNoHalfedge) return false;
+  Halfedge spoke = first;
   do {
-    if (kernel.is_boundary(spoke)) return false;
-    visit(halfedges.point(kernel.to_vertex_handle(spoke)));
-    spoke = kernel.opposite_halfedge_handle(kernel.prev_halfedge_handle(spoke));
+    if (halfedges.is_boundary(spoke)) return false;
+    visit(halfedges.to(spoke));
+    spoke = halfedges.turned(spoke);
   } while (spoke != first);
   return true;
 }

@@ -4,7 +4,9 @@
 #include <optional>
 
 #include "engine/base/error.h"
+#include "engine/base/once.h"
 #include "engine/base/parallel.h"
+#include "engine/mesh/edge_length.h"
 #include "engine/scheme/cost_rows.h"
 #include "engine/scheme/local_cost.h"
 
@@ -35,17 +37,16 @@ std::uint32_t longest_side(const Mesh& mesh, std::uint32_t face) {
 // scheme reads them; nothing at a boundary or where they are not six.
 std::optional<Quadruple> quadruple_of(const Surface& surface, std::uint32_t face,
                                       std::uint32_t base) {
-  const auto& kernel = surface.halfedges.kernel;
+  const Halfedges& halfedges = surface.halfedges;
   const Triangle& triangle = surface.mesh.triangles[face];
   Quadruple points{triangle[base], triangle[(base + 1) % 3], triangle[(base + 2) % 3], 0, 0, 0};
-  auto side = kernel.halfedge_handle(OpenMesh::FaceHandle(static_cast<int>(face)));
-  for (std::uint32_t i = 0; i < base; ++i) side = kernel.next_halfedge_handle(side);
+  Halfedge side = halfedges.first_of_face(face);
+  for (std::uint32_t i = 0; i < base; ++i) side = halfedges.next(side);
   for (std::size_t i = 3; i < 6; ++i) {
-    const auto across = kernel.opposite_halfedge_handle(side);
-    if (kernel.is_boundary(across)) return std::nullopt;
-    points[i] =
-        surface.halfedges.point(kernel.to_vertex_handle(kernel.next_halfedge_handle(across)));
-    side = kernel.next_halfedge_handle(side);
+    const Halfedge across = halfedges.opposite(side);
+    if (halfedges.is_boundary(across)) return std::nullopt;
+    points[i] = halfedges.to(halfedges.next(across));
+    side = halfedges.next(side);
   }
   // the apexes differ from M's corners by construction unless two faces share all their points
   for (std::size_t i = 3; i < 6; ++i) {
@@ -191,6 +192,39 @@ class TsqScheme::ApexMoves {
   std::array<double, std::size_t{1} << kMaxNumberBits> tanh_ratios_;
 };
 
+// The scheme on one surface.
+class TsqScheme::Bound final : public BoundScheme {
+ public:
+  Bound(const TsqScheme& scheme, const Surface& surface) : scheme_(scheme), surface_(surface) {}
+
+  [[nodiscard]] UnitSet find_units() const override;
+  [[nodiscard]] CostMatrix costs(const UnitSet& units, std::span<const std::uint32_t> chosen,
+                                 std::span<const Word> words) const override;
+  [[nodiscard]] Embedding embed(const UnitSet& units, std::span<const Placement> placements,
+                                std::span<const Word> words) const override;
+  [[nodiscard]] std::vector<Reading> read() const override;
+  [[nodiscard]] PointLists points_of(std::span<const std::uint32_t> anchors) const override;
+  [[nodiscard]] std::unique_ptr<BoundScheme> moved_to(const Surface& moved) const override {
+    return std::make_unique<Bound>(scheme_, moved);
+  }
+  [[nodiscard]] double cell_size() const override {
+    return scheme_.options_.step * mean_edge_length(surface_.mesh);
+  }
+
+ private:
+  [[nodiscard]] const LocalCost& local_cost() const {
+    return local_cost_.get([&] { return LocalCost(surface_, scheme_.options_.cost); });
+  }
+
+  const TsqScheme& scheme_;
+  const Surface surface_;
+  Once<LocalCost> local_cost_;
+};
+
+std::unique_ptr<BoundScheme> TsqScheme::bind(const Surface& surface) const {
+  return std::make_unique<Bound>(*this, surface);
+}
+
 TsqScheme::Channel TsqScheme::make_channel(const WordCode& code, double step, int bits,
                                            std::size_t role) {
   const int height_bits = bits / 2;
@@ -256,17 +290,17 @@ std::array<std::uint32_t, 3> TsqScheme::outer_bits(const Word& word) const {
   return {word.subscript, word.part & ((1U << first) - 1), word.part >> first};
 }
 
-UnitSet TsqScheme::find_units(const Surface& surface) const {
+UnitSet TsqScheme::Bound::find_units() const {
   struct Found {
     std::uint32_t face;
     Quadruple points;
   };
   const auto found = parallel_collect<Found>(
-      surface.mesh.triangles.size(), [&](std::size_t face, std::vector<Found>& out) {
+      surface_.mesh.triangles.size(), [&](std::size_t face, std::vector<Found>& out) {
         const auto points =
-            quadruple_of(surface, static_cast<std::uint32_t>(face),
-                         longest_side(surface.mesh, static_cast<std::uint32_t>(face)));
-        if (points && embed_marker(surface.mesh, *points)) {
+            quadruple_of(surface_, static_cast<std::uint32_t>(face),
+                         longest_side(surface_.mesh, static_cast<std::uint32_t>(face)));
+        if (points && scheme_.embed_marker(surface_.mesh, *points)) {
           out.push_back({static_cast<std::uint32_t>(face), *points});
         }
       });
@@ -292,18 +326,17 @@ std::optional<Vec3> TsqScheme::place_apex(const Mesh& mesh, std::span<const std:
   return frame.at(apex->x * triangle.base, apex->height * triangle.base);
 }
 
-CostMatrix TsqScheme::costs(const Surface& surface, const UnitSet& units,
-                            std::span<const std::uint32_t> chosen,
-                            std::span<const Word> words) const {
+CostMatrix TsqScheme::Bound::costs(const UnitSet& units, std::span<const std::uint32_t> chosen,
+                                   std::span<const Word> words) const {
   std::array<std::vector<std::uint32_t>, 3> values;  // of S, D1 and D2 in every word
   for (const Word& word : words) {
-    const auto bits = outer_bits(word);
+    const auto bits = scheme_.outer_bits(word);
     for (std::size_t i = 0; i < 3; ++i) values[i].push_back(bits[i]);
   }
-  const LocalCost local(surface, options_.cost);
+  const LocalCost& local = local_cost();
   return fill_cost_rows(chosen.size(), words.size(), [&](std::size_t row, std::span<float> costs) {
     const auto points = units.moved[chosen[row]];
-    const auto marked = embed_marker(surface.mesh, points);
+    const auto marked = scheme_.embed_marker(surface_.mesh, points);
     if (!marked) return;
     const std::array<Move, 3> corners{{{points[0], marked->corners[0]},
                                        {points[1], marked->corners[1]},
@@ -311,12 +344,14 @@ CostMatrix TsqScheme::costs(const Surface& surface, const UnitSet& units,
     const float marker = local.of_part(corners);
     std::array<std::vector<float>, 3> parts;
     for (std::size_t i = 0; i < 3; ++i) {
-      const ApexMoves moves(marked->outer[i], outer_channels_[i]);
-      parts[i] = values_of_each(outer_channels_[i].bits(), values[i], [&](std::uint32_t bits) {
-        if (local.goes_by_distance()) return local.of_distance(moves.move(bits));
-        const auto apex = place_apex(surface.mesh, points, *marked, i, bits);
-        return apex ? local.of_part(std::array<Move, 1>{{{points[3 + i], *apex}}}) : kInfeasible;
-      });
+      const ApexMoves moves(marked->outer[i], scheme_.outer_channels_[i]);
+      parts[i] =
+          values_of_each(scheme_.outer_channels_[i].bits(), values[i], [&](std::uint32_t bits) {
+            if (local.goes_by_distance()) return local.of_distance(moves.move(bits));
+            const auto apex = scheme_.place_apex(surface_.mesh, points, *marked, i, bits);
+            return apex ? local.of_part(std::array<Move, 1>{{{points[3 + i], *apex}}})
+                        : kInfeasible;
+          });
     }
     for (std::size_t word = 0; word < costs.size(); ++word) {
       const std::array<float, 4> unit{marker, parts[0][word], parts[1][word], parts[2][word]};
@@ -325,18 +360,17 @@ CostMatrix TsqScheme::costs(const Surface& surface, const UnitSet& units,
   });
 }
 
-Embedding TsqScheme::embed(const Surface& surface, const UnitSet& units,
-                           std::span<const Placement> placements,
-                           std::span<const Word> words) const {
-  Embedding embedding{surface.mesh.positions, {}};
+Embedding TsqScheme::Bound::embed(const UnitSet& units, std::span<const Placement> placements,
+                                  std::span<const Word> words) const {
+  Embedding embedding{surface_.mesh.positions, {}};
   const auto place = [&](const Placement& placement) {
     const auto points = units.moved[placement.unit];
-    const std::optional<Marked> marked = embed_marker(surface.mesh, points);
+    const std::optional<Marked> marked = scheme_.embed_marker(surface_.mesh, points);
     if (!marked) return false;
-    const auto bits = outer_bits(words[placement.word]);
+    const auto bits = scheme_.outer_bits(words[placement.word]);
     std::array<Vec3, 3> apexes;
     for (std::size_t i = 0; i < 3; ++i) {
-      const auto apex = place_apex(surface.mesh, points, *marked, i, bits[i]);
+      const auto apex = scheme_.place_apex(surface_.mesh, points, *marked, i, bits[i]);
       if (!apex) return false;
       apexes[i] = *apex;
     }
@@ -392,27 +426,26 @@ void TsqScheme::read_outer(const Mesh& mesh, const Quadruple& points, Reading& r
   reading.word = {bits[0], bits[1] | bits[2] << outer_channels_[1].bits()};
 }
 
-std::vector<Reading> TsqScheme::read(const Surface& surface) const {
+std::vector<Reading> TsqScheme::Bound::read() const {
   const auto read_face = [&](std::size_t face, std::vector<Reading>& out) {
     Reading reading;
     reading.anchor = static_cast<std::uint32_t>(face);
-    const std::uint32_t base = longest_side(surface.mesh, reading.anchor);
-    if (!has_marker(surface.mesh, base, reading)) return;  // most faces end here
-    const auto points = quadruple_of(surface, reading.anchor, base);
+    const std::uint32_t base = longest_side(surface_.mesh, reading.anchor);
+    if (!scheme_.has_marker(surface_.mesh, base, reading)) return;  // most faces end here
+    const auto points = quadruple_of(surface_, reading.anchor, base);
     if (!points) return;
-    read_outer(surface.mesh, *points, reading);
+    scheme_.read_outer(surface_.mesh, *points, reading);
     if (std::isfinite(reading.weight)) out.push_back(reading);
   };
-  return parallel_collect<Reading>(surface.mesh.triangles.size(), read_face);
+  return parallel_collect<Reading>(surface_.mesh.triangles.size(), read_face);
 }
 
-PointLists TsqScheme::points_of(const Surface& surface,
-                                std::span<const std::uint32_t> anchors) const {
+PointLists TsqScheme::Bound::points_of(std::span<const std::uint32_t> anchors) const {
   PointLists lists;
   for (const std::uint32_t face : anchors) {
     std::optional<Quadruple> points;
-    if (face < surface.mesh.triangles.size()) {
-      points = quadruple_of(surface, face, longest_side(surface.mesh, face));
+    if (face < surface_.mesh.triangles.size()) {
+      points = quadruple_of(surface_, face, longest_side(surface_.mesh, face));
     }
     if (points) std::sort(points->begin(), points->end());
     lists.append(points ? std::span<const std::uint32_t>(*points)

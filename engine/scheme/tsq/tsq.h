@@ -32,22 +32,9 @@ class TsqScheme final : public Scheme {
  public:
   TsqScheme(const WordCode& code, const TsqOptions& options);
 
-  // Anchors are triangles. O(triangles), parallel.
-  [[nodiscard]] UnitSet find_units(const Surface& surface) const override;
-
-  // O(chosen * words), parallel over units; the cost of the marker is part of every entry.
-  [[nodiscard]] CostMatrix costs(const Surface& surface, const UnitSet& units,
-                                 std::span<const std::uint32_t> chosen,
-                                 std::span<const Word> words) const override;
-
-  [[nodiscard]] Embedding embed(const Surface& surface, const UnitSet& units,
-                                std::span<const Placement> placements,
-                                std::span<const Word> words) const override;
-
-  [[nodiscard]] std::vector<Reading> read(const Surface& surface) const override;
-
-  [[nodiscard]] PointLists points_of(const Surface& surface,
-                                     std::span<const std::uint32_t> anchors) const override;
+  // Anchors are triangles. All calls are parallel: find_units and read take O(triangles), costs
+  // O(chosen * words); the cost of the marker is part of every entry.
+  [[nodiscard]] std::unique_ptr<BoundScheme> bind(const Surface& surface) const override;
 
  private:
   // The two quantised numbers of one triangle's shape.
@@ -74,6 +61,7 @@ class TsqScheme final : public Scheme {
     double move = 0;    // model units
   };
 
+  class Bound;
   class ApexChoices;
   class ApexMoves;
 

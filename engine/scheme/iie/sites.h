@@ -1,0 +1,59 @@
+// What IIE needs of a surface's connectivity alone: no motion, rounding or noise changes it.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "engine/mesh/halfedges.h"
+#include "engine/scheme/iie/ring_signature.h"
+
+namespace triglyph {
+
+struct IieSites {
+  std::vector<std::uint32_t> points;  // that may be anchors, ascending
+  std::vector<char> at_boundary;      // does the triangle have an edge without a neighbour?
+};
+
+// Sites are points whose keyed ring signature none within `rings` rings beats; with 0 rings every
+// point that has a signature. Parallel; O(halfedges) and the rings of the few points that beat
+// their neighbours.
+[[nodiscard]] IieSites find_sites(const Halfedges& halfedges, std::size_t points, int rings,
+                                  std::uint64_t seed);
+
+// Points within so many rings of one, itself among them, ascending, as long as accept(other) says
+// yes to each; nothing once it says no, or if a fan is open.
+template <typename Accept>
+std::optional<std::vector<std::uint32_t>> accepted_points_within(const Halfedges& halfedges,
+                                                                 std::uint32_t point, int rings,
+                                                                 const Accept& accept) {
+  std::vector<std::uint32_t> found{point};  // ascending in the part that earlier rings filled
+  std::vector<std::uint32_t> last{point}, next;
+  for (int ring = 0; ring < rings; ++ring) {
+    next.clear();
+    for (const std::uint32_t from : last) {
+      bool all_accepted = true;
+      const bool closed = visit_ring(halfedges, from, [&](std::uint32_t other) {
+        all_accepted = all_accepted && accept(other);
+        if (!std::binary_search(found.begin(), found.end(), other)) next.push_back(other);
+      });
+      if (!closed || !all_accepted) return std::nullopt;
+    }
+    std::sort(next.begin(), next.end());
+    next.erase(std::unique(next.begin(), next.end()), next.end());
+    const auto middle = static_cast<std::ptrdiff_t>(found.size());
+    found.insert(found.end(), next.begin(), next.end());
+    std::inplace_merge(found.begin(), found.begin() + middle, found.end());
+    std::swap(last, next);
+  }
+  return found;
+}
+
+// All points within so many rings of one, itself among them, ascending; nothing if a fan is open.
+[[nodiscard]] inline std::optional<std::vector<std::uint32_t>> points_within(
+    const Halfedges& halfedges, std::uint32_t point, int rings) {
+  return accepted_points_within(halfedges, point, rings, [](std::uint32_t) { return true; });
+}
+
+}  // namespace triglyph
