@@ -152,23 +152,25 @@ std::optional<AieScheme::Basis> AieScheme::basis_at(const Surface& surface, std:
   return Basis{edge, norm};
 }
 
-std::optional<AieScheme::Site> AieScheme::site_on(const Surface& surface, const Basis& basis,
-                                                  std::uint32_t anchor) const {
-  const auto around = neighbourhood_of(surface, basis.edge, false, rule_of(anchor));
-  if (!around) return std::nullopt;
-  const AffineNorm& norm = basis.norm;
-  if (norm.is_plane()) {
-    for (const std::uint32_t point : around->all_groups()) {
-      if (norm.height(surface.mesh.positions[point]) > kExactPlane) return std::nullopt;
-    }
+// Those that may be moved: over a plane basis none may stand out of the plane.
+std::optional<EdgeNeighbourhood> AieScheme::neighbours_of(const Surface& surface,
+                                                          const Basis& basis,
+                                                          std::uint32_t anchor) const {
+  auto around = neighbourhood_of(surface, basis.edge, false, rule_of(anchor));
+  if (!around || !basis.norm.is_plane()) return around;
+  for (const std::uint32_t point : around->all_groups()) {
+    if (basis.norm.height(surface.mesh.positions[point]) > kExactPlane) return std::nullopt;
   }
-  return Site{*around, norm, kMaxMove * norm.greatest_deviation()};
+  return around;
 }
 
 std::optional<AieScheme::Site> AieScheme::site_at(const Surface& surface,
                                                   std::uint32_t anchor) const {
   const auto basis = basis_at(surface, anchor / kAlternatives);
-  return basis ? site_on(surface, *basis, anchor) : std::nullopt;
+  if (!basis) return std::nullopt;
+  const auto around = neighbours_of(surface, *basis, anchor);
+  if (!around) return std::nullopt;
+  return Site{*around, basis->norm, kMaxMove * basis->norm.greatest_deviation()};
 }
 
 float AieScheme::group_cost(const Mesh& mesh, const LocalCost& local, const Site& site,
@@ -191,13 +193,12 @@ UnitSet AieScheme::Bound::find_units() const {
     if (!basis) return;
     for (std::uint32_t i = 0; i < kAlternatives; ++i) {
       const std::uint32_t anchor = kAlternatives * edge + i;
-      const std::optional<Site> site = scheme_.site_on(surface_, *basis, anchor);
-      if (!site) continue;
-      const auto moved = site->around.all_groups();
+      const auto around = scheme_.neighbours_of(surface_, *basis, anchor);
+      if (!around) continue;
+      const auto moved = around->all_groups();
       found.anchors.push_back(anchor);
       found.moved.append(moved);
-      found.read.points.insert(found.read.points.end(), site->around.basis.begin(),
-                               site->around.basis.end());
+      found.read.points.insert(found.read.points.end(), around->basis.begin(), around->basis.end());
       found.read.append(moved);
     }
   };
@@ -206,7 +207,17 @@ UnitSet AieScheme::Bound::find_units() const {
       find_at(static_cast<std::uint32_t>(edge), parts[begin / kBlock]);
     }
   });
+  std::size_t count = 0, points = 0;
+  for (const UnitSet& part : parts) {
+    count += part.size();
+    points += part.read.points.size();
+  }
   UnitSet units;
+  units.anchors.reserve(count);
+  units.moved.offsets.reserve(count + 1);
+  units.moved.points.reserve(points - 4 * count);
+  units.read.offsets.reserve(count + 1);
+  units.read.points.reserve(points);
   for (const UnitSet& part : parts) {
     units.anchors.insert(units.anchors.end(), part.anchors.begin(), part.anchors.end());
     units.moved.append(part.moved);

@@ -81,8 +81,9 @@ class AieScheme final : public Scheme {
   [[nodiscard]] GroupRule rule_of(std::uint32_t anchor) const;
   [[nodiscard]] GroupBits deal_out(const Word& word) const;
   [[nodiscard]] static std::optional<Basis> basis_at(const Surface& surface, std::uint32_t edge);
-  [[nodiscard]] std::optional<Site> site_on(const Surface& surface, const Basis& basis,
-                                            std::uint32_t anchor) const;
+  [[nodiscard]] std::optional<EdgeNeighbourhood> neighbours_of(const Surface& surface,
+                                                               const Basis& basis,
+                                                               std::uint32_t anchor) const;
   [[nodiscard]] std::optional<Site> site_at(const Surface& surface, std::uint32_t anchor) const;
   [[nodiscard]] std::optional<Vec3> place(const Site& site, std::size_t group, const Vec3& point,
                                           std::uint32_t bits) const;
