@@ -25,7 +25,7 @@ OptionSpec scheme_spec() {
 }
 
 std::vector<OptionSpec> message_specs() {
-  return {{"message", OptionKind::Text, "", {}, {}, "", "Message to hide, 1 to 256 bytes"},
+  return {{"message", OptionKind::Text, "", {}, {}, "triglyph", "Message to hide, 1 to 256 bytes"},
           {"message_hex", OptionKind::Text, "", {}, {}, "", "Message in hexadecimal"},
           {"fill",
            OptionKind::Flag,
