@@ -26,7 +26,7 @@ struct ExtractArguments {
   MachineArguments machine;
 };
 
-// Printable text as it is, anything else in hexadecimal.
+// Returns printable text unchanged, anything else in hexadecimal.
 std::string shown(const Message& message) {
   const bool printable = std::all_of(message.begin(), message.end(),
                                      [](std::uint8_t byte) { return byte >= 32 && byte < 127; });
@@ -34,7 +34,7 @@ std::string shown(const Message& message) {
                    : "0x" + to_hex(message);
 }
 
-// The exponent of the least power of two that is not below the chance.
+// Returns the exponent of the least power of two that is not below the probability.
 int power_of_two_above(double chance) {
   return static_cast<int>(std::ceil(std::log2(chance)));
 }
@@ -74,7 +74,7 @@ void print_json(const std::filesystem::path& path, const FileReading& reading,
   std::cout << to_line(json);
 }
 
-// Prints results as they come and keeps what the exit code says of them.
+// Prints results as they arrive, and keeps track of the exit code.
 class ResultPrinter {
  public:
   ResultPrinter(std::span<const Key> keys, bool json) : keys_(keys), json_(json) {}
@@ -106,7 +106,7 @@ class ResultPrinter {
   bool all_readable_ = true;
 };
 
-// How the marks of a run were written, each way once.
+// Returns the distinct encodings of the marks in a file of records.
 std::vector<Encoding> encodings_in(const std::filesystem::path& records) {
   std::ifstream stream(records);
   if (std::filesystem::is_directory(records) || !stream) {
@@ -118,7 +118,7 @@ std::vector<Encoding> encodings_in(const std::filesystem::path& records) {
     ++number;
     try {
       const Record record = parse_record(line);
-      if (!record.file.is_marked() || record.file.request.fill) continue;
+      if (!record.file.is_marked() || record.file.request.is_fill()) continue;
       Encoding encoding = record.file.encoding();
       if (std::find(encodings.begin(), encodings.end(), encoding) == encodings.end()) {
         encodings.push_back(std::move(encoding));
@@ -166,11 +166,11 @@ void add_extract_verb(CLI::App& app, Action& action) {
   verb->add_option("inputs", arguments->inputs,
                    "Meshes, folders, globs, manifests (.jsonl), or - for a list on standard input")
       ->required()
-      ->type_name("INPUT...");
+      ->type_name("INPUT");
   verb->add_option("--like", arguments->like,
-                   "Also look for marks made as in these records, with another step or word format")
+                   "Also try the schemes and options with which these records were marked")
       ->type_name("RECORDS");
-  verb->add_flag("--json", arguments->json, "Print one JSON object a mesh");
+  verb->add_flag("--json", arguments->json, "Print one JSON object per mesh");
   add_declared_options(*verb, encoding_option_specs(), arguments->values);
   arguments->keys.add_to(*verb);
   arguments->machine.add_threads_to(*verb);

@@ -12,7 +12,7 @@ using Json = nlohmann::ordered_json;
   throw Error(ErrorCode::Malformed, {}, "", reason);
 }
 
-// Every option that applied, in the order in which help lists them.
+// Returns the values of all options, in the order of help.
 Json options_of(const MarkedFile& file) {
   MarkOptions options = file.request.options;
   options.format = file.format;
@@ -66,8 +66,8 @@ void read_run(const Json& run, Record& record) {
   record.peak_bytes = run.value("peak_bytes", std::uint64_t{0});
 }
 
-// What a record says of the marking. Of schema 1, which wrote some options as shares, those that a
-// reader needs are taken: they mean the same in both.
+// Returns the request of a record. From schema 1, in which some options are shares, it takes only
+// those that a reader needs, which are the same in both schemas.
 MarkRequest request_in(const Json& json, int schema) {
   OptionValues values;
   for (const auto& [key, value] : json.at("options").items()) {
@@ -108,10 +108,10 @@ Json to_json(const Record& record) {
                    {"units_embedded", file.units_embedded},
                    {"units_bound", file.units_bound},
                    {"parts", file.parts},
-                   {"fill", request.fill}});
-  if (!request.fill) {
-    json["message_hex"] = to_hex(request.message);
-    json["message_bits"] = 8 * request.message.size();
+                   {"fill", request.is_fill()}});
+  if (!request.is_fill()) {
+    json["message_hex"] = to_hex(request.message());
+    json["message_bits"] = 8 * request.message().size();
   } else {
     json["message_bits"] = std::uint64_t{file.parts} * file.format.part_bits;
   }

@@ -28,7 +28,7 @@ struct MarkItem final : FlowItem {
       : marking(std::move(job.mesh), std::move(job.out), std::move(job.request)) {
     index = job.index;
     const MarkedFile& file = marking.result();
-    memory_estimate = memory_of(file.mesh, file.request.fill);
+    memory_estimate = memory_of(file.mesh, file.request.is_fill());
   }
   FileMarking marking;
 };
@@ -80,7 +80,7 @@ void run_jobs(JobSource& jobs, const Key& key, const FlowOptions& options,
       stage(marking);
     };
   };
-  // from the read-back on a mesh is nearly done, and finishing it loses nothing
+  // after the read-back a mesh is nearly done, so it is finished
   const auto always = [](const Stage& stage) {
     return [stage](FlowItem& item) { stage(static_cast<MarkItem&>(item).marking); };
   };

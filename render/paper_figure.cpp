@@ -21,7 +21,7 @@ std::vector<std::uint32_t> anchors_of(const Marking& marking) {
   return anchors;
 }
 
-// Facets all of whose points belong to one unit.
+// Returns the facets all of whose points belong to one unit.
 std::vector<Colour> facets_of_units(const Mesh& mesh, const PointLists& units) {
   const EdgeGraph graph = edge_graph(mesh);
   std::vector<Colour> colours(mesh.triangles.size(), from_srgb(kClay));
@@ -61,7 +61,7 @@ class PaperFigure {
 
   Image draw() {
     const Marking best = marked();
-    mark_options_.format = best.format;  // the same bit plan for both
+    mark_options_.format = best.format;  // the same word format for both
     mark_options_.keeps_subscript_bits = true;
     mark_options_.layout.method = LayoutMethod::FirstFit;
     mark_options_.assign = AssignMethod::Sequential;
@@ -77,14 +77,14 @@ class PaperFigure {
   }
 
  private:
-  // Of the balls of iie, model units.
+  // Returns the radius of the balls of iie in model units.
   [[nodiscard]] double radius() const {
     return number_in(mark_options_.scheme_options, "radius", 0);
   }
 
   [[nodiscard]] Marking marked() const {
     return mark(
-        {mesh_, halfedges_}, {}, Key::trial(), mark_options_,
+        {mesh_, halfedges_}, Fill{}, Key::trial(), mark_options_,
         [](const Vec3& point) { return point; }, 0);
   }
 
@@ -134,7 +134,7 @@ class PaperFigure {
         facets_of_units(after, scheme->bind({after, halfedges_})->points_of(anchors));
   }
 
-  // The mean of an anchor and its one-ring.
+  // Returns the mean of an anchor and its one-ring.
   [[nodiscard]] static Vec3 ball_centre(const Mesh& mesh, const EdgeGraph& graph,
                                         std::uint32_t anchor) {
     Vec3 sum = mesh.positions[anchor];

@@ -1,10 +1,7 @@
-// Hiding a message in a mesh: the paper's figure 2 on one page. Layout decides which units there
-// are, assignment which watermark word each carries; either step can be switched off.
-// Wang & Hu, CAGD 27 (2010), section 2.
+// Marking a mesh. Layout chooses the units, assignment the watermark word that each of them
+// carries; either step can be switched off.
+// Wang & Hu, CAGD 27 (2010), section 2 and figure 2.
 #pragma once
-
-#include <cstdint>
-#include <span>
 
 #include "engine/marking/marking.h"
 #include "engine/marking/options.h"
@@ -12,13 +9,13 @@
 
 namespace triglyph {
 
-// Marks a mesh with a message. Throws Error Usage for a message or options that cannot be. An empty
-// message asks for the paper's experiment: a keyed random message as long as the capacity, one part
-// a unit up to 2^13 units, repeated beyond. `number_step` is the distance between the numbers that
-// the output can hold, model units, and explains a failure.
-// O(triangles + units * parts) and the assignment.
-[[nodiscard]] Marking mark(const Surface& surface, std::span<const std::uint8_t> message,
-                           const Key& key, const MarkOptions& options, const Rounding& rounding,
+// Marks a mesh with a message, or fills it. `number_step`, in model units, is the distance between
+// neighbouring numbers of the output; it tells a mesh that is too small from a file that is too
+// coarse. Does not change the surface, and does not read the mark back. Throws Error Usage for a
+// message that is empty, longer than 256 bytes or in need of more parts than the subscript bits
+// number, and for options out of range. O(triangles + units * parts) plus the assignment.
+[[nodiscard]] Marking mark(const Surface& surface, const Payload& payload, const Key& key,
+                           const MarkOptions& options, const Rounding& rounding,
                            double number_step);
 
 }  // namespace triglyph

@@ -86,13 +86,13 @@ FileMarking::FileMarking(std::filesystem::path mesh, std::filesystem::path out, 
 FileMarking::~FileMarking() = default;
 FileMarking::FileMarking(FileMarking&&) noexcept = default;
 
-// Ends the mesh's way with a reason.
+// Ends the stages with a status and a reason.
 void FileMarking::end(FileStatus status, const std::string& reason) {
   result_.status = status;
   result_.error = result_.mesh.string() + ": " + reason;
 }
 
-// Runs one stage of a mesh that nothing has ended yet; the one place where exceptions stop.
+// Runs one stage unless an earlier one failed. The only place where exceptions are caught.
 template <typename Stage>
 void FileMarking::run_stage(double& seconds, const Stage& stage) noexcept {
   if (!result_.is_marked()) return;
@@ -142,12 +142,12 @@ void FileMarking::mark(const Key& key) noexcept {
     const MeshFile& file = *work_->file;
     MarkOptions& options = result_.request.options;
     result_.key_fingerprint = key.fingerprint();
-    if (result_.request.fill) {
+    if (result_.request.is_fill()) {
       options.scheme_options = fixed_for(file.mesh(), options.scheme_options);
     }
     const Surface surface{file.mesh(), *work_->halfedges};
     const auto rounding = [&](const Vec3& point) { return file.round(point); };
-    work_->marking = triglyph::mark(surface, result_.request.message, key, options, rounding,
+    work_->marking = triglyph::mark(surface, result_.request.payload, key, options, rounding,
                                     file.number_step());
     describe(work_->marking);
     if (work_->marking.status == MarkStatus::TooSmall) {
@@ -180,9 +180,9 @@ void FileMarking::read_back(const Key& key) noexcept {
         carriers_read(work_->marking.carriers, work_->marking.words, found.readings);
     result_.units_embedded = static_cast<std::uint32_t>(embedded.size());
     const std::size_t carriers = work_->marking.carriers.size();
-    const bool verified = result_.request.fill
+    const bool verified = result_.request.is_fill()
                               ? !embedded.empty() && embedded.size() >= carriers * 99 / 100
-                              : found.message == result_.request.message;
+                              : found.message == result_.request.message();
     if (!verified) {
       end(FileStatus::NotVerified, "the mark could not be read back (" +
                                        std::to_string(result_.units_embedded) + " of " +
@@ -229,8 +229,8 @@ MarkedFile mark_file(const std::filesystem::path& mesh, const std::filesystem::p
 
 std::uint64_t estimate_memory(std::uint64_t file_bytes, const std::filesystem::path& mesh,
                               bool fill) {
-  // Measured at 1 to 20 million triangles: bytes of memory for a byte of the file, a quarter on
-  // top; and bytes of the file for a vertex with its two triangles, from below.
+  // Measured at 1 to 20 million triangles: bytes of memory per byte of the file, with a quarter
+  // added, and the fewest bytes of the file per vertex with its two triangles.
   struct Format {
     std::string_view ending;
     std::uint64_t memory;
@@ -245,8 +245,8 @@ std::uint64_t estimate_memory(std::uint64_t file_bytes, const std::filesystem::p
   constexpr std::uint64_t kProgram = std::uint64_t{1} << 20;
   std::uint64_t bytes = kProgram + file_bytes * format.memory;
   if (fill) {
-    // The costs of every unit under every word, and a copy by candidates: no layout has more units
-    // than a sixth of the vertices, and larger matrices are dealt into blocks.
+    // The cost matrix, and a copy of it for the candidate lists. No layout has more units than a
+    // sixth of the vertices, and larger matrices are split into blocks.
     const std::uint64_t units = file_bytes / format.file_bytes_a_vertex / 6;
     constexpr std::uint64_t kMostPairs = std::uint64_t{1} << 26;
     const bool is_large = units >= std::uint64_t{1} << 13;

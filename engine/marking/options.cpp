@@ -12,10 +12,10 @@ namespace {
 
 constexpr std::array<std::string_view, 3> kAssignNames = {"sequential", "bottleneck", "sum"};
 
-// The three forms of the message: a set of values holds one of them at most.
+// The three forms of the payload; values may hold at most one of them.
 constexpr std::array<std::string_view, 3> kMessageKeys = {"message", "message_hex", "fill"};
 
-// A search longer than a day is a slip of the pen; random seeds are exact as JSON numbers.
+// A search longer than a day is taken for a typing error; seeds must be exact as JSON numbers.
 constexpr double kMostSeconds = 86400;
 constexpr double kMostSeed = 9007199254740992.0;  // 2^53
 
@@ -33,12 +33,12 @@ std::vector<OptionSpec> message_specs() {
            {},
            {},
            "",
-           "Hide a random message as long as the capacity, the paper's experiment"}};
+           "Hide a random message as long as the capacity, as in the paper's experiment"}};
 }
 
 using Options = MarkOptions;
 
-// The bits of a word are members of a member, so their places are written out.
+// The numbers of bits are members of a member, so their accessors are written out.
 Option<Options> bits_option(std::string key, int WordFormat::*bits, OptionRange range,
                             std::string help) {
   return {{std::move(key), OptionKind::Count, "bits", range, {}, "the scheme's", std::move(help)},
@@ -63,38 +63,42 @@ Option<Options> of_layout(Option<LayoutOptions> option) {
 OptionTable<Options> make_table() {
   using Layout = LayoutOptions;
   return {
-      bits_option("marker_bits", &WordFormat::marker_bits, {0, 16}, "Bits of the marker, m"),
-      bits_option("subscript_bits", &WordFormat::subscript_bits, {1, 16},
-                  "Bits of the subscript, s; with --fill as few as needed unless given"),
-      bits_option("part_bits", &WordFormat::part_bits, {2, 32}, "Bits of the message in a unit, w"),
+      bits_option("marker_bits", &WordFormat::marker_bits, {0, 16}, "Marker bits in a unit, m"),
+      bits_option(
+          "subscript_bits", &WordFormat::subscript_bits, {1, 16},
+          "Subscript bits in a unit, s; with --fill, as few as number all units unless given"),
+      bits_option("part_bits", &WordFormat::part_bits, {2, 32}, "Message bits in a unit, w"),
       of_layout(choice_option<Layout>("layout", &Layout::method, layout_names(), "the scheme's",
-                                      "How units are chosen; first-fit is un-optimised")),
+                                      "Method that chooses the units; first-fit is un-optimised")),
       of_layout(count_option<Layout>("layout_iterations", &Layout::iterations, {1, 1e9}, "", "64",
-                                     "Passes over the candidates of a layout that searches")),
+                                     "Passes over the candidates, for layouts that search")),
       of_layout(number_option<Layout>(
           "layout_seconds", &Layout::seconds, {0, kMostSeconds}, "seconds", "0",
-          "Search for so long instead; the result then depends on the machine")),
+          "Time to search instead; the result then depends on the machine; 0: by passes")),
       of_layout(count_option<Layout>("layout_seed", &Layout::seed, {0, kMostSeed}, "", "1",
                                      "Seed of the search's random numbers")),
       choice_option<Options>(
           "conflicts", &Options::conflict_rule, conflict_names(), "read-write",
-          "Units interfere if one moves what the other reads, or if they share a point"),
-      choice_option<Options>("assign", &Options::assign, assign_names(), "bottleneck",
-                             "How words are assigned to units; sequential is un-optimised"),
+          "Units interfere if one moves a point that the other reads, or if they share any point"),
+      choice_option<Options>(
+          "assign", &Options::assign, assign_names(), "bottleneck",
+          "Method that assigns words to units: in sequence (un-optimised), with the least maximum "
+          "cost, or with the least sum of costs"),
       choice_option<Options>("cost", &Options::cost, cost_names(), "displacement",
-                             "Local change that the assignment minimises"),
+                             "Local change of the surface that the assignment minimises"),
       count_option<Options>("redundancy", &Options::redundancy, {0, 1e6}, "units", "32",
-                            "Units wanted for each part; 0: as many as there are"),
-      number_option<Options>("max_move", &Options::max_move_percent, {0, 100},
-                             "percent of the diagonal", "the scheme's",
-                             "Farthest move of a point that a repeat is worth; 0: any"),
+                            "Units wanted for each part of the message; 0: as many as there are"),
+      number_option<Options>(
+          "max_move", &Options::max_move_percent, {0, 100}, "percent of the diagonal",
+          "the scheme's",
+          "Farthest move of a point beyond which parts get fewer units; 0: no limit"),
       number_option<Options>("drop_dearest", &Options::drop_dearest_percent, {0, 99.9}, "percent",
                              "0",
-                             "Share of the candidates to leave out, those dear under every word: "
-                             "less capacity, less to be seen"),
-      flag_option<Options>("detail", &Options::detail,
-                           "Write every unit into the record, for verify --detail; always with "
-                           "iie")};
+                             "Share of the candidates to leave out, the most expensive ones first: "
+                             "lowers capacity and visibility"),
+      flag_option<Options>(
+          "detail", &Options::detail,
+          "List every unit in the record, for verify --detail; always on with iie")};
 }
 
 const OptionTable<Options>& table() {
@@ -102,8 +106,8 @@ const OptionTable<Options>& table() {
   return options;
 }
 
-// The options of all schemes, each key once: a key that two schemes share means the same in both,
-// and each checks its own range.
+// Returns the options of all schemes, each key once. A key that schemes share means the same in all
+// of them; each scheme checks its own range.
 std::vector<OptionSpec> scheme_specs() {
   std::vector<OptionSpec> specs;
   for (const std::string_view scheme : scheme_names()) {
@@ -133,7 +137,7 @@ bool is_scheme_option(std::string_view key) {
                      [&](std::string_view scheme) { return has_option(scheme, key); });
 }
 
-// The values over the scheme's defaults; each scheme checks its own.
+// Overrides the scheme's defaults, checked by the scheme's own declarations.
 void apply_scheme_options(const OptionValues& values, MarkOptions& options) {
   for (const OptionSpec& spec : scheme_info(options.scheme).options) {
     const auto found = values.find(spec.key);
@@ -148,7 +152,7 @@ MarkOptions resolved_options(const OptionValues& values, std::string_view scheme
   validate(options.format);
   options.keeps_subscript_bits = options.keeps_subscript_bits && fill;
   options.detail = options.detail || options.scheme == "iie";  // locating damage is its use
-  // a scheme checks what its options are worth together when it is made
+  // the constructor of a scheme checks its options in combination
   (void)make_scheme(options.scheme, WordCode(Key::trial(), options.format), options.scheme_options);
   return options;
 }
@@ -253,13 +257,15 @@ MarkRequest resolve(const OptionValues& values) {
     return found == values.end() ? nullptr : std::get_if<std::string>(&found->second);
   };
   const auto fill = values.find("fill");
-  request.fill = fill != values.end() && fill->second == OptionValue(true);
-  if (const std::string* text = text_of("message")) {
-    request.message.assign(text->begin(), text->end());
+  if (fill != values.end() && fill->second == OptionValue(true)) {
+    request.payload = Fill{};
+  } else if (const std::string* hex = text_of("message_hex")) {
+    request.payload = from_hex(*hex);
+  } else if (const std::string* text = text_of("message")) {
+    request.payload = Message(text->begin(), text->end());
   }
-  if (const std::string* hex = text_of("message_hex")) request.message = from_hex(*hex);
-  request.options = resolved_options(values, scheme_of(values), request.fill);
-  if (!request.fill) check_message(request.options.format, request.message.size());
+  request.options = resolved_options(values, scheme_of(values), request.is_fill());
+  if (!request.is_fill()) check_message(request.options.format, request.message().size());
   return request;
 }
 

@@ -10,7 +10,7 @@
 namespace triglyph {
 namespace {
 
-// Units that carry one of the words, wherever they stand.
+// Returns the number of units with one of the words, at any anchor.
 std::uint32_t count_words(const WordCode& code, std::span<const Word> words,
                           std::span<const Reading> readings) {
   return static_cast<std::uint32_t>(
@@ -45,7 +45,8 @@ std::vector<std::uint64_t> vertices_of(const MeshFile& file, const PointLists& l
   return vertices;
 }
 
-// Anchors are numbers of the mesh as it was written: nothing if it is numbered otherwise now.
+// Returns nothing if the mesh is numbered differently from the one written, whose indices anchors
+// are.
 std::optional<Damage> damage_of(const MarkedFile& marked, const Readable& readable,
                                 const BoundScheme& scheme, std::span<const Word> words,
                                 std::span<const Reading> readings, std::uint32_t units_found,
@@ -105,10 +106,10 @@ Verification verify_file(const MarkedFile& marked, const Key& key, bool locate) 
     const Extraction found = extract(*bound, code, doubtful_parts(encoding.scheme_options));
     const MarkRequest& request = marked.request;
     const std::vector<Word> words =
-        request.fill ? code.fill_words(marked.parts) : code.words_of(request.message);
+        request.is_fill() ? code.fill_words(marked.parts) : code.words_of(request.message());
     result.units_found = count_words(code, words, found.readings);
-    const bool carries = request.fill ? 2 * result.units_found > marked.units_embedded
-                                      : found.message == request.message;
+    const bool carries = request.is_fill() ? 2 * result.units_found > marked.units_embedded
+                                           : found.message == request.message();
     const bool right_key = marked.key_fingerprint == key.fingerprint();
     if (right_key) {
       result.damage =

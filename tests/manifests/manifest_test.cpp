@@ -47,16 +47,16 @@ TEST(Manifest, LinesOverrideDefaultsOverrideOptions) {
   ASSERT_EQ(jobs.size(), 3U);
   EXPECT_EQ(jobs[0].mesh, folder / "a/b.obj");
   EXPECT_EQ(jobs[0].out, folder / "o/a/b.obj");
-  EXPECT_EQ(jobs[0].request.message, (Message{'a', 'l', 'l'}));
+  EXPECT_EQ(jobs[0].request.message(), (Message{'a', 'l', 'l'}));
   EXPECT_EQ(jobs[0].request.options.redundancy, 7U);
   EXPECT_EQ(jobs[1].out, folder / "x.ply");
-  EXPECT_EQ(jobs[1].request.message, (Message{0, 255}));
+  EXPECT_EQ(jobs[1].request.message(), (Message{0, 255}));
   EXPECT_EQ(jobs[1].request.options.scheme_options.at("step"), OptionValue(0.05));
   EXPECT_EQ(jobs[1].request.options.layout.method, LayoutMethod::FirstFit);
   EXPECT_EQ(jobs[1].request.options.assign, AssignMethod::Sum);
   EXPECT_EQ(jobs[1].request.options.cost, CostFunction::Rms);
   EXPECT_EQ(jobs[1].request.options.format, (WordFormat{4, 9, 16}));
-  EXPECT_TRUE(jobs[2].request.fill);
+  EXPECT_TRUE(jobs[2].request.is_fill());
   EXPECT_EQ(jobs[2].request.options.scheme_options, scheme_info("tsq").defaults(true).options);
   EXPECT_EQ(jobs[2].index, 2U);
 }

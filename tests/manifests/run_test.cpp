@@ -174,7 +174,7 @@ TEST(Formats, MessageSurvivesConversionFromAnyToAny) {
       const Mesh mesh = MeshFile::open(path).mesh();
       path = collection.folder() / ("c" + std::to_string(k) + "." + endings[k]);
       save(test::with_significant_digits(mesh, 6), path, chain[k]);
-      EXPECT_EQ(message_in(path), records[i].file.request.message) << i << " -> " << path;
+      EXPECT_EQ(message_in(path), records[i].file.request.message()) << i << " -> " << path;
     }
   }
 }

@@ -204,7 +204,7 @@ TEST(Mark, RedundancyLeavesTheDearestUnitsOut) {
 TEST(Mark, FillGivesEveryUnitAPartOfItsOwn) {
   const MarkOptions options = default_mark_options("tsq", true);
   const auto& ball = test::bumpy_ball();
-  const Marking marking = mark(ball.surface(), {}, Key::trial(), options, test::as_float, 1e-7);
+  const Marking marking = mark(ball.surface(), Fill{}, Key::trial(), options, test::as_float, 1e-7);
   EXPECT_EQ(marking.words.size(), marking.units_valid);
   EXPECT_GE(marking.carriers.size(), marking.units_valid * 95 / 100);
   std::set<std::uint32_t> words;
@@ -212,12 +212,26 @@ TEST(Mark, FillGivesEveryUnitAPartOfItsOwn) {
   EXPECT_EQ(words.size(), marking.carriers.size());
 }
 
+TEST(Mark, RefusesAnEmptyMessageInsteadOfFilling) {
+  const auto refuses = [](const Payload& payload) {
+    try {
+      (void)mark(test::bumpy_ball().surface(), payload, Key::trial(), {}, test::as_float, 1e-7);
+    } catch (const Error& error) {
+      return error.code() == ErrorCode::Usage;
+    }
+    return false;
+  };
+  EXPECT_TRUE(refuses(Message{}));
+  EXPECT_TRUE(refuses({}));  // nothing chosen is no choice of fill
+  EXPECT_TRUE(refuses(Message(257)));
+}
+
 TEST(Mark, TooSmallAndTooCoarseAreSaid) {
   const test::Solid grid(test::flat_grid(3, 3));
   EXPECT_EQ(mark(grid.surface(), kMessage, Key::trial(), {}, unrounded, 0).status,
             MarkStatus::TooSmall);
   const test::Solid tetrahedron(test::tetrahedron());
-  EXPECT_EQ(mark(tetrahedron.surface(), {}, Key::trial(), {}, unrounded, 0).status,
+  EXPECT_EQ(mark(tetrahedron.surface(), Fill{}, Key::trial(), {}, unrounded, 0).status,
             MarkStatus::TooSmall);
   const double step = 0.01;  // about a third of an edge
   const auto coarse = [&](const Vec3& p) {

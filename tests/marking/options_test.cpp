@@ -55,11 +55,13 @@ TEST(MarkOptions, ValuesResolveToTheOptionsTheyCameFrom) {
 TEST(MarkOptions, AMessageInAnyFormReplacesOneInAnyOther) {
   const OptionValues base = with_message({{"redundancy", std::int64_t{3}}});
   const MarkRequest hex = resolve(layered(base, {{"message_hex", std::string("00ff")}}));
-  EXPECT_EQ(hex.message, (Message{0, 255}));
+  EXPECT_EQ(hex.message(), (Message{0, 255}));
   EXPECT_EQ(hex.options.redundancy, 3U);
-  EXPECT_TRUE(resolve(layered(base, {{"fill", true}})).fill);
-  EXPECT_EQ(resolve(layered(base, {{"fill", false}})).message, (Message{'m'}));
+  EXPECT_TRUE(resolve(layered(base, {{"fill", true}})).is_fill());
+  EXPECT_EQ(resolve(layered(base, {{"fill", false}})).message(), (Message{'m'}));
   EXPECT_THROW((void)resolve({}), Error);
+  EXPECT_THROW((void)resolve({{"message", std::string()}}), Error);
+  EXPECT_THROW((void)resolve({{"message_hex", std::string()}}), Error);
 }
 
 TEST(MarkOptions, OptionsOfAnotherSchemeContradictTheSchemeInUse) {

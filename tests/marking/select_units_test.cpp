@@ -72,7 +72,7 @@ TEST_F(FindCapacity, KeepsTheSubscriptBitsItIsTold) {
     options_.drop_dearest_percent = 0;
     options_.keeps_subscript_bits = keeps;
     return mark(
-               test::bumpy_ball().surface(), {}, Key::trial(), options_,
+               test::bumpy_ball().surface(), Fill{}, Key::trial(), options_,
                [](const Vec3& p) { return p; }, 0)
         .format;
   };

@@ -97,13 +97,13 @@ TEST(RealMeshes, MarkedBunnySurvivesWhatItShould) {
     const test::Solid solid(mesh);
     return extract(*scheme->bind(solid.surface()), code).message;
   };
-  EXPECT_EQ(message_in(marked), request.message);
-  EXPECT_EQ(message_in(test::with_significant_digits(marked, 6)), request.message);
+  EXPECT_EQ(message_in(marked), request.message());
+  EXPECT_EQ(message_in(test::with_significant_digits(marked, 6)), request.message());
   EXPECT_FALSE(message_in(MeshFile::open(kBunny).mesh()));
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-    EXPECT_EQ(message_in(test::shuffled(marked, seed)), request.message);
-    EXPECT_EQ(message_in(test::moved_rigidly_and_scaled(marked, seed)), request.message);
-    EXPECT_EQ(message_in(test::cropped_half(marked, seed)), request.message);
+    EXPECT_EQ(message_in(test::shuffled(marked, seed)), request.message());
+    EXPECT_EQ(message_in(test::moved_rigidly_and_scaled(marked, seed)), request.message());
+    EXPECT_EQ(message_in(test::cropped_half(marked, seed)), request.message());
   }
   fs::path path = record.out;
   const FileFormat chain[] = {FileFormat::PlyLittle, FileFormat::StlBinary, FileFormat::Off};
@@ -116,7 +116,7 @@ TEST(RealMeshes, MarkedBunnySurvivesWhatItShould) {
     OutputFile file(path);
     file.write(export_mesh(mesh, format));
     file.commit();
-    EXPECT_EQ(message_in_file(path), request.message) << path;
+    EXPECT_EQ(message_in_file(path), request.message()) << path;
   }
 }
 
@@ -138,8 +138,8 @@ void expect_affine_survival(const fs::path& mesh, const std::string& groups) {
   EXPECT_FALSE(message_in(marked, Key::generate()));
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const Mesh mapped = test::affinely_mapped(marked, 4, seed % 2 == 0, seed);
-    EXPECT_EQ(message_in(mapped), request.message) << mesh << seed;
-    EXPECT_EQ(message_in(test::cropped_half(test::shuffled(mapped, seed), seed)), request.message)
+    EXPECT_EQ(message_in(mapped), request.message()) << mesh << seed;
+    EXPECT_EQ(message_in(test::cropped_half(test::shuffled(mapped, seed), seed)), request.message())
         << mesh << seed;
   }
 }
@@ -173,15 +173,15 @@ void expect_noise_survival(const fs::path& mesh, double intensity, int bits) {
     const test::Solid solid(attacked);
     return extract(solid.surface(), request.options.encoding(), key).message;
   };
-  EXPECT_EQ(message_in(marked), request.message);
+  EXPECT_EQ(message_in(marked), request.message());
   EXPECT_FALSE(message_in(MeshFile::open(mesh).mesh()));
   EXPECT_FALSE(message_in(marked, Key::generate()));
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const Mesh moved = test::moved_rigidly_and_scaled(test::shuffled(marked, seed), seed);
-    EXPECT_EQ(message_in(moved), request.message) << mesh << seed;
-    EXPECT_EQ(message_in(test::with_uniform_noise(moved, intensity, seed)), request.message)
+    EXPECT_EQ(message_in(moved), request.message()) << mesh << seed;
+    EXPECT_EQ(message_in(test::with_uniform_noise(moved, intensity, seed)), request.message())
         << mesh << seed;
-    EXPECT_EQ(message_in(test::quantised(moved, bits)), request.message) << mesh << seed;
+    EXPECT_EQ(message_in(test::quantised(moved, bits)), request.message()) << mesh << seed;
   }
 }
 

@@ -113,7 +113,7 @@ TEST(Iie, FillIsReadBackAndOptimisationPays) {
   plain.layout.method = LayoutMethod::FirstFit;
   plain.assign = AssignMethod::Sequential;
   const auto fill = [](const MarkOptions& options) {
-    return mark(test::bumpy_ball().surface(), {}, Key::trial(), options, test::as_float, 1e-7);
+    return mark(test::bumpy_ball().surface(), Fill{}, Key::trial(), options, test::as_float, 1e-7);
   };
   const Marking before = fill(plain);
   const Marking after = fill(optimised);
