@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "cli/config.h"
+#include "cli/options.h"
 #include "cli/verbs.h"
 #include "engine/base/error.h"
 
@@ -16,7 +17,7 @@ int report(const std::exception& error, int code) {
   return code;
 }
 
-// Errors of usage, keys and manifests are the user's to mend; the rest ends the run.
+// Errors in arguments, key files and manifests are usage errors; others are fatal.
 int exit_code_of(ErrorCode code) {
   switch (code) {
     case ErrorCode::Usage:
@@ -35,6 +36,7 @@ int exit_code_of(ErrorCode code) {
 int run_app(int argc, char** argv) try {
   CLI::App app("Hides a blind, invisible watermark in meshes and reads it back.", "triglyph");
   app.set_version_flag("--version", "triglyph " TRIGLYPH_VERSION);
+  app.formatter(make_help_formatter());  // the verbs take it over
   add_config_file(app);
   app.require_subcommand(1);
   Action action;
@@ -50,7 +52,7 @@ int run_app(int argc, char** argv) try {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kDone : kUsageError;
   } catch (const std::invalid_argument& error) {
-    return report(error, kUsageError);  // the parser's way to refuse the value of a flag
+    return report(error, kUsageError);  // thrown by the parser for a bad value of a flag
   }
   return action();
 } catch (const Error& error) {

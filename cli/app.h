@@ -1,16 +1,17 @@
-// The command line: parses arguments, runs one verb, turns its end into an exit code.
+// The command line: parses the arguments, runs one verb and returns an exit code.
 #pragma once
 
 namespace triglyph {
 
 // Exit codes.
 inline constexpr int kDone = 0;
-inline constexpr int kFatal = 1;          // the run could not go on
+inline constexpr int kFatal = 1;          // the run could not continue
 inline constexpr int kUsageError = 2;     // arguments, key file or manifest
 inline constexpr int kSomeFailed = 3;     // finished, but not every mesh is as it should be
 inline constexpr int kNoMark = 4;         // every file was read, but some carry no mark
-inline constexpr int kInterrupted = 130;  // whole files only; the run can be repeated
+inline constexpr int kInterrupted = 130;  // all files written are complete; the run can be repeated
 
+// Runs the program. Does not throw.
 [[nodiscard]] int run_app(int argc, char** argv);
 
 }  // namespace triglyph

@@ -52,7 +52,7 @@ class StrictConfig final : public CLI::ConfigTOML {
                 reason);
   }
 
-  // The line of every key, which must not come twice in a section.
+  // Finds the line of every key; a section must not repeat a key.
   [[nodiscard]] Lines lines_of(const std::string& text) const {
     Lines lines;
     std::istringstream stream(text);
@@ -107,7 +107,8 @@ class StrictConfig final : public CLI::ConfigTOML {
 }  // namespace
 
 void add_config_file(CLI::App& app) {
-  app.set_config("--config", "", "Read options from a TOML file, one section a verb");
+  app.set_config("--config", "", "Read options from a TOML file with one section per subcommand")
+      ->type_name("FILE");
   app.config_formatter(std::make_shared<StrictConfig>(app));
 }
 

@@ -1,13 +1,13 @@
-// Config files: TOML with a section a verb, whose keys are those of manifests and options.
+// Config files: TOML with one section per verb, with the keys of manifests.
 #pragma once
 
 #include <CLI/CLI.hpp>
 
 namespace triglyph {
 
-// Lets the app read --config. Unlike the parser's own reader it takes max_move for max-move, and
-// refuses a key that is unknown, comes twice or has a value out of range with Error Malformed that
-// names file, line and key.
+// Adds the option --config to the app. Keys may be spelled with underscores. An unknown or repeated
+// key and a value out of range are refused with Error Malformed, which names file, line and key;
+// the parser's own reader does neither.
 void add_config_file(CLI::App& app);
 
 }  // namespace triglyph

@@ -7,9 +7,9 @@
 namespace triglyph {
 
 void add_keygen_verb(CLI::App& app, Action& action) {
-  CLI::App* verb = app.add_subcommand("keygen", "Make a secret key");
+  CLI::App* verb = app.add_subcommand("keygen", "Generate a secret key");
   auto out = std::make_shared<std::filesystem::path>();
-  verb->add_option("--out", *out, "Key file to create, mode 0600; must not exist")
+  verb->add_option("--out", *out, "Key file to create, with mode 0600; must not exist")
       ->required()
       ->type_name("FILE");
   verb->callback([&action, out] {

@@ -28,7 +28,7 @@ struct MarkArguments {
   KeyArgument key;
   MachineArguments machine;
 
-  // The values with the default message where the user names none.
+  // Returns the values, with the default message if the user gives none.
   [[nodiscard]] OptionValues values_with_message() const {
     return layered({{"message", std::string(kDefaultMessage)}}, values);
   }
@@ -64,7 +64,8 @@ std::ofstream open_records(const MarkArguments& arguments) {
   return file;
 }
 
-// Where records go as they come: the table or JSON on stdout, JSON in the records file.
+// Prints records as they arrive: as a table or JSON on standard output, as JSON in the records
+// file.
 class RecordPrinter {
  public:
   RecordPrinter(const MarkArguments& arguments, std::size_t total)
@@ -89,7 +90,7 @@ class RecordPrinter {
     bar_.advance(failed);
   }
 
-  // The number of meshes that are not marked.
+  // Returns the number of meshes that are not marked.
   std::size_t finish() {
     bar_.clear();
     return failed_;
@@ -100,10 +101,10 @@ class RecordPrinter {
   std::size_t failed_ = 0;
   ProgressBar bar_;
   std::filesystem::path records_;
-  std::ofstream file_;  // a line at a time, so that a run that dies leaves the records it made
+  std::ofstream file_;  // flushed line by line, so that an aborted run keeps its records
 };
 
-// Below the directory for pictures as the marked file is below that for meshes.
+// Returns the path of the picture: relative to its directory as the marked file is to its own.
 std::filesystem::path picture_of(const Record& record, const MarkArguments& arguments) {
   std::filesystem::path name = record.file.out.lexically_relative(arguments.out);
   if (name.empty() || *name.begin() == "..") name = record.file.out.filename();
@@ -155,13 +156,13 @@ void add_mark_verb(CLI::App& app, Action& action) {
   auto arguments = std::make_shared<MarkArguments>();
   verb->add_option("inputs", arguments->inputs, "A manifest (.jsonl), or meshes")
       ->required()
-      ->type_name("MANIFEST|MESH...");
+      ->type_name("MANIFEST|MESH");
   verb->add_option("--out", arguments->out, "Directory for the marked files")->type_name("DIR");
   add_declared_options(*verb, mark_option_specs(), arguments->values);
-  verb->add_option("--records", arguments->records, "Write one JSON record a mesh to this file")
+  verb->add_option("--records", arguments->records, "Write one JSON record per mesh to this file")
       ->type_name("FILE");
   verb->add_option("--render", arguments->pictures,
-                   "Draw a comparison of every mesh that is marked into this directory")
+                   "Draw a picture that compares each mesh with its marked copy, in this directory")
       ->type_name("DIR");
   verb->add_flag("--json", arguments->json, "Print the records instead of a table");
   arguments->key.add_to(*verb);

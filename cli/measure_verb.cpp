@@ -29,7 +29,7 @@ struct MeasureArguments {
   }
 };
 
-// The metrics asked for; by default and for "all" those that these meshes have.
+// Returns the metrics to compute; by default and for "all" only those that apply to these meshes.
 std::vector<std::string> chosen_metrics(const MeasureArguments& arguments, bool same_triangles) {
   if (!arguments.metrics.empty() && !arguments.wants_all()) return arguments.metrics;
   std::vector<std::string> chosen = {"hausdorff", "displacement"};
@@ -69,22 +69,27 @@ int run_measure(const MeasureArguments& arguments) {
 }  // namespace
 
 void add_measure_verb(CLI::App& app, Action& action) {
-  CLI::App* verb = app.add_subcommand("measure", "Distances between two meshes, in model units");
+  CLI::App* verb =
+      app.add_subcommand("measure", "Measure distances between two meshes, in model units");
   auto arguments = std::make_shared<MeasureArguments>();
-  verb->add_option("original", arguments->original, "Mesh")->required();
-  verb->add_option("marked", arguments->marked, "Mesh to compare with it")->required();
+  verb->add_option("original", arguments->original, "Original mesh")->required()->type_name("MESH");
+  verb->add_option("marked", arguments->marked, "Mesh to compare with the original")
+      ->required()
+      ->type_name("MESH");
   std::vector<std::string> names = strings(metric_names());
   names.emplace_back("all");
-  verb->add_option(
-          "--metric", arguments->metrics,
-          "Which, separated by commas [hausdorff,displacement]: " + CLI::detail::join(names))
+  verb->add_option("--metric", arguments->metrics,
+                   "Metrics, separated by commas: " + CLI::detail::join(names, ", ") +
+                       " (default: hausdorff,displacement)")
       ->delimiter(',')
-      ->check(CLI::IsMember(names));
+      ->check(CLI::IsMember(names).description(""))
+      ->type_name("NAME");
   verb->add_option("--tolerance", arguments->tolerance,
-                   "Greatest error of the Hausdorff distance, as a share of the diagonal")
-      ->check(CLI::Range(1e-12, 1.0))
-      ->capture_default_str();
-  verb->add_flag("--json", arguments->json, "One JSON object");
+                   "Greatest error of the Hausdorff distance, as a share of the bounding box's "
+                   "diagonal (1e-12 to 1; default: 1e-6)")
+      ->check(CLI::Range(1e-12, 1.0).description(""))
+      ->type_name("N");
+  verb->add_flag("--json", arguments->json, "Print one JSON object");
   arguments->machine.add_threads_to(*verb);
   verb->callback(
       [&action, arguments] { action = [arguments] { return run_measure(*arguments); }; });

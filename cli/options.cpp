@@ -1,6 +1,7 @@
 #include "cli/options.h"
 
 #include <iostream>
+#include <sstream>
 
 namespace triglyph {
 namespace {
@@ -11,7 +12,31 @@ Key trial_key() {
   return Key::trial();
 }
 
-// What help shows behind the option's name.
+// Width of the descriptions in help: with the column of names, lines have 100 characters.
+constexpr std::size_t kDescriptionWidth = 70;
+
+// Returns the text in lines of at most kDescriptionWidth characters, broken at blanks.
+std::string wrapped(const std::string& text) {
+  std::istringstream stream(text);
+  std::string result;
+  std::size_t column = 0;
+  for (std::string word; stream >> word; column += word.size()) {
+    const bool is_full = column > 0 && column + 1 + word.size() > kDescriptionWidth;
+    if (column > 0) result += is_full ? '\n' : ' ';
+    column = is_full ? 0 : column + (column > 0 ? 1 : 0);
+    result += word;
+  }
+  return result;
+}
+
+class HelpFormatter : public CLI::Formatter {
+ public:
+  std::string make_option_desc(const CLI::Option* option) const override {
+    return wrapped(CLI::Formatter::make_option_desc(option));
+  }
+};
+
+// Returns what help shows behind the option's name.
 std::string type_name(const OptionSpec& spec) {
   switch (spec.kind) {
     case OptionKind::Flag:
@@ -27,14 +52,13 @@ std::string type_name(const OptionSpec& spec) {
   return "";
 }
 
-// The line of help: what it is, its range and its default.
+// Returns the line of help, with the range and the default in parentheses.
 std::string description(const OptionSpec& spec) {
-  std::string text = spec.help;
-  if (spec.kind == OptionKind::Count || spec.kind == OptionKind::Number) {
-    text += "; " + spec.domain();
+  std::string note = spec.range_text();
+  if (!spec.default_text.empty()) {
+    note += (note.empty() ? "default: " : "; default: ") + spec.default_text;
   }
-  if (!spec.default_text.empty()) text += " [" + spec.default_text + "]";
-  return text;
+  return note.empty() ? spec.help : spec.help + " (" + note + ")";
 }
 
 }  // namespace
@@ -60,8 +84,12 @@ void add_declared_options(CLI::App& verb, const std::vector<OptionSpec>& specs,
   }
 }
 
+std::shared_ptr<CLI::Formatter> make_help_formatter() {
+  return std::make_shared<HelpFormatter>();
+}
+
 void KeyArgument::add_to(CLI::App& verb) {
-  verb.add_option("--key-file", file_, "Secret key made by keygen; a public trial key without it")
+  verb.add_option("--key-file", file_, "Secret key made by keygen (default: a public trial key)")
       ->type_name("FILE");
 }
 
@@ -71,8 +99,8 @@ Key KeyArgument::load() const {
 
 void KeysArgument::add_to(CLI::App& verb) {
   verb.add_option("--key-file", files_,
-                  "Secret key made by keygen, may be given several times; a public trial key "
-                  "without it")
+                  "Secret key made by keygen; may be given several times (default: a public trial "
+                  "key)")
       ->type_name("FILE")
       ->take_all()
       ->expected(1)
@@ -87,16 +115,18 @@ std::vector<Key> KeysArgument::load() const {
 }
 
 void MachineArguments::add_threads_to(CLI::App& verb) {
-  verb.add_option("--threads", threads_, "Threads to use [all]")
-      ->check(CLI::Range(1, 1024))
+  verb.add_option("--threads", threads_, "Threads to use (1 to 1024; default: all)")
+      ->check(CLI::Range(1, 1024).description(""))
       ->type_name("N");
 }
 
 void MachineArguments::add_memory_to(CLI::App& verb) {
-  verb.add_option("--memory", memory_,
-                  "Memory for meshes in work, such as 4G; a larger mesh goes alone")
-      ->transform(CLI::AsSizeValue(false))
-      ->default_str("4G");
+  verb.add_option(
+          "--memory", memory_,
+          "Memory for the meshes in process, such as 500M or 16G; a larger mesh is processed "
+          "alone (default: 4G)")
+      ->transform(CLI::AsSizeValue(false).description(""))
+      ->type_name("SIZE");
 }
 
 }  // namespace triglyph

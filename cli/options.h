@@ -1,8 +1,9 @@
-// Arguments that several verbs share, and what they become once they are known to make sense.
+// Arguments that several verbs share, and the values that they are validated to.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -15,15 +16,16 @@
 
 namespace triglyph {
 
-// Names to choose from, as the parser wants them.
+// Converts names to the type that the parser takes.
 [[nodiscard]] std::vector<std::string> strings(std::span<const std::string_view> names);
 
-// Adds an option for every declaration to the verb; what the user gives is collected in `values`,
-// which must outlive the verb. A value out of range ends the parse with Error Usage.
+// Adds one option per declaration to the verb. The values that the user gives are collected in
+// `values`. Declarations and values must outlive the verb. A value out of range ends the parse with
+// Error Usage.
 void add_declared_options(CLI::App& verb, const std::vector<OptionSpec>& specs,
                           OptionValues& values);
 
-// --key-file. Without it the public trial key is used and a warning printed.
+// The option --key-file. Without it the public trial key is used, and a warning is printed.
 class KeyArgument {
  public:
   void add_to(CLI::App& verb);
@@ -33,7 +35,7 @@ class KeyArgument {
   std::filesystem::path file_;
 };
 
-// --key-file, any number of times.
+// The option --key-file, which may be given several times.
 class KeysArgument {
  public:
   void add_to(CLI::App& verb);
@@ -43,7 +45,10 @@ class KeysArgument {
   std::vector<std::filesystem::path> files_;
 };
 
-// --threads and --memory.
+// Returns a formatter of help that breaks long descriptions into lines of about 100 characters.
+[[nodiscard]] std::shared_ptr<CLI::Formatter> make_help_formatter();
+
+// The options --threads and --memory.
 class MachineArguments {
  public:
   void add_threads_to(CLI::App& verb);

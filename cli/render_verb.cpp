@@ -9,12 +9,12 @@ namespace triglyph {
 
 void add_render_verb(CLI::App& app, Action& action) {
   CLI::App* verb = app.add_subcommand(
-      "render", "Draw meshes beside each other, without a display (triglyph-render)");
-  // all arguments are the renderer's, --help among them
+      "render", "Draw meshes side by side, without a display (runs triglyph-render)");
+  // all arguments, including --help, are passed to the renderer
   verb->prefix_command();
   verb->set_help_flag();
   verb->callback(
-      [&action, verb] { action = [rest = verb->remaining()]() -> int { become_renderer(rest); }; });
+      [&action, verb] { action = [rest = verb->remaining()]() -> int { exec_renderer(rest); }; });
 }
 
 }  // namespace triglyph

@@ -27,7 +27,7 @@ struct SampleArguments {
   MachineArguments machine;
 };
 
-// Names of the shapes on the command line and in file names; "all" takes them in turn.
+// Names of the shapes on the command line and in file names; "all" takes turns.
 struct NamedShape {
   const char* name;
   SampleShape shape;
@@ -45,7 +45,7 @@ const NamedShape& shape_of(const SampleArguments& arguments, std::size_t index) 
 
 ExportFormat export_format(const SampleArguments& arguments) {
   ExportFormat format;
-  format.significant_digits = 9;  // text that a float reader takes without loss
+  format.significant_digits = 9;  // enough to represent any float exactly
   if (arguments.format == "off") format.format = FileFormat::Off;
   if (arguments.format == "ply") {
     format.format = arguments.ascii ? FileFormat::PlyAscii : FileFormat::PlyLittle;
@@ -78,26 +78,29 @@ int run_sample(const SampleArguments& arguments) {
 }  // namespace
 
 void add_sample_verb(CLI::App& app, Action& action) {
-  CLI::App* verb = app.add_subcommand("sample", "Make procedural meshes for trials and benchmarks");
+  CLI::App* verb =
+      app.add_subcommand("sample", "Generate procedural meshes for trials and benchmarks");
   auto arguments = std::make_shared<SampleArguments>();
   verb->add_option("--out", arguments->out, "Directory for the meshes")
       ->required()
       ->type_name("DIR");
-  verb->add_option("--count", arguments->count, "How many")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
-  verb->add_option("--triangles", arguments->triangles, "Triangles of each, about")
-      ->check(CLI::Range(12, 20000000))
-      ->capture_default_str();
-  verb->add_option("--seed", arguments->seed, "The same seed makes the same meshes")
-      ->capture_default_str();
-  verb->add_option("--shape", arguments->shape, "closed, open, high-genus, or all in turn")
-      ->check(CLI::IsMember({"all", "closed", "open", "high-genus"}))
-      ->capture_default_str();
-  verb->add_option("--format", arguments->format, "obj, off, ply or stl")
-      ->check(CLI::IsMember({"obj", "off", "ply", "stl"}))
-      ->capture_default_str();
-  verb->add_flag("--ascii", arguments->ascii, "Text instead of binary PLY and STL");
+  verb->add_option("--count", arguments->count, "Number of meshes (1 to 1000000; default: 1)")
+      ->check(CLI::Range(1, 1000000).description(""))
+      ->type_name("N");
+  verb->add_option("--triangles", arguments->triangles,
+                   "Approximate number of triangles of each mesh (12 to 20000000; default: 10000)")
+      ->check(CLI::Range(12, 20000000).description(""))
+      ->type_name("N");
+  verb->add_option("--seed", arguments->seed,
+                   "Seed of the random numbers; the same seed gives the same meshes (default: 1)")
+      ->type_name("N");
+  verb->add_option("--shape", arguments->shape, "Kind of shapes; all takes turns (default: all)")
+      ->check(CLI::IsMember({"all", "closed", "open", "high-genus"}).description(""))
+      ->type_name("all|closed|open|high-genus");
+  verb->add_option("--format", arguments->format, "File format (default: obj)")
+      ->check(CLI::IsMember({"obj", "off", "ply", "stl"}).description(""))
+      ->type_name("obj|off|ply|stl");
+  verb->add_flag("--ascii", arguments->ascii, "Write PLY and STL as text instead of binary");
   arguments->machine.add_threads_to(*verb);
   verb->callback([&action, arguments] { action = [arguments] { return run_sample(*arguments); }; });
 }

@@ -1,4 +1,4 @@
-// What people see: a table of records, a progress bar, and the interrupt key.
+// Terminal output and input: a table of records, a progress bar, and the interrupt key.
 #pragma once
 
 #include <atomic>
@@ -8,12 +8,13 @@
 
 namespace triglyph {
 
-// One line a mesh under a heading; printable anywhere, aligned for names up to 32 characters.
+// Print a table with one row per mesh, aligned for names of up to 32 characters.
+// Longer names are shortened at the front.
 void print_table_heading(std::ostream& out);
 void print_table_row(std::ostream& out, const Record& record);
 
-// A line on the terminal behind stderr that is redrawn at most ten times a second; silent
-// elsewhere.
+// A progress bar on standard error, redrawn at most ten times a second. Silent unless standard
+// error is a terminal.
 class ProgressBar {
  public:
   explicit ProgressBar(std::size_t total);
@@ -31,7 +32,8 @@ class ProgressBar {
   bool visible_;
 };
 
-// Becomes true at the first SIGINT or SIGTERM; the second one ends the process at once.
+// Returns a flag that becomes true at the first SIGINT or SIGTERM. The second signal ends the
+// process at once.
 [[nodiscard]] const std::atomic<bool>& interrupt_flag();
 
 }  // namespace triglyph

@@ -23,7 +23,7 @@ bool is_executable(const fs::path& path) {
   return access(path.c_str(), X_OK) == 0;
 }
 
-// As exec wants them; views of the strings.
+// Returns the arguments as exec takes them; the strings must outlive them.
 std::vector<char*> argument_vector(const fs::path& program, const std::vector<std::string>& rest) {
   std::vector<char*> all{const_cast<char*>(program.c_str())};
   for (const std::string& argument : rest) all.push_back(const_cast<char*>(argument.c_str()));
@@ -52,7 +52,7 @@ fs::path find_renderer() {
               "pictures need triglyph-render, which is neither beside triglyph nor in PATH");
 }
 
-void become_renderer(const std::vector<std::string>& arguments) {
+void exec_renderer(const std::vector<std::string>& arguments) {
   const fs::path program = find_renderer();
   execv(program.c_str(), argument_vector(program, arguments).data());
   fail_to_start(program);
@@ -70,16 +70,16 @@ RenderBatch::RenderBatch(const std::vector<std::string>& arguments) {
     fail_to_start(program);
   }
   if (process_ == 0) {
-    // an interrupt is the run's, which then stops its renderer
+    // the run handles interrupts, and then stops its renderer
     std::signal(SIGINT, SIG_IGN);
     dup2(ends[0], STDIN_FILENO);
-    dup2(STDERR_FILENO, STDOUT_FILENO);  // standard output is the run's
+    dup2(STDERR_FILENO, STDOUT_FILENO);  // standard output belongs to the run
     execv(program.c_str(), all.data());
     _exit(127);
   }
   close(ends[0]);
   pipe_ = ends[1];
-  std::signal(SIGPIPE, SIG_IGN);  // a renderer that died is told by finish()
+  std::signal(SIGPIPE, SIG_IGN);  // finish() reports a renderer that died
 }
 
 RenderBatch::~RenderBatch() {

@@ -1,5 +1,5 @@
-// The executable that draws pictures. It is one of its own because its libraries take 0.2 s to
-// load.
+// Access to triglyph-render, the executable that draws pictures. It is separate because its
+// libraries take 0.2 s to load.
 #pragma once
 
 #include <filesystem>
@@ -8,15 +8,15 @@
 
 namespace triglyph {
 
-// triglyph-render, beside the running executable or else in PATH's directories. Throws Error Usage
-// if it is in neither.
+// Returns the path of triglyph-render, beside the running executable or else in a directory of
+// PATH. Throws Error Usage if it is in neither.
 [[nodiscard]] std::filesystem::path find_renderer();
 
-// Becomes triglyph-render with these arguments; does not return. Throws Error Usage if it cannot be
+// Replaces this process by triglyph-render with these arguments. Throws Error Usage if it cannot be
 // started.
-[[noreturn]] void become_renderer(const std::vector<std::string>& arguments);
+[[noreturn]] void exec_renderer(const std::vector<std::string>& arguments);
 
-// triglyph-render --batch in a process of its own: pictures are drawn while the run goes on.
+// A child process triglyph-render --batch, which draws pictures while the run continues.
 class RenderBatch {
  public:
   // Throws Error Usage if it cannot be started.
@@ -25,15 +25,15 @@ class RenderBatch {
   RenderBatch(const RenderBatch&) = delete;
   RenderBatch& operator=(const RenderBatch&) = delete;
 
-  // Has a picture drawn of the two meshes. Waits if the renderer is far behind. What comes after
-  // the renderer died is lost; finish() then says so.
+  // Queues a picture of the two meshes. Blocks if the renderer is far behind. If the renderer died,
+  // the picture is lost and finish() returns false.
   void draw(const std::filesystem::path& original, const std::filesystem::path& marked,
             const std::filesystem::path& out);
 
-  // Only the picture that is being drawn will still be.
+  // Lets the renderer finish the current picture only.
   void stop() const;
 
-  // Waits for the last picture. Were all drawn?
+  // Waits for the last picture. Returns whether all were drawn.
   [[nodiscard]] bool finish();
 
  private:

@@ -1,4 +1,5 @@
-// One function a verb: registers its arguments with the app and leaves what to run in `action`.
+// The verbs. Each function adds a verb with its arguments to the app; if the user chooses the verb,
+// parsing sets `action`.
 #pragma once
 
 #include <functional>
@@ -7,7 +8,7 @@
 
 namespace triglyph {
 
-// Runs the verb the user chose; returns an exit code.
+// Runs the verb that the user chose, and returns an exit code.
 using Action = std::function<int()>;
 
 void add_keygen_verb(CLI::App& app, Action& action);

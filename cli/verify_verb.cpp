@@ -29,7 +29,7 @@ Record parse_line(const VerifyArguments& arguments, const std::string& line,
   throw Error(ErrorCode::Malformed, arguments.records, at_line(number), error.message());
 }
 
-// "3-17 20 22-24"
+// Returns ascending numbers as ranges: "3-17 20 22-24".
 std::string ranges(const std::vector<std::uint64_t>& numbers) {
   std::string text;
   for (std::size_t i = 0; i < numbers.size();) {
@@ -116,15 +116,17 @@ int run_verify(const VerifyArguments& arguments) {
 
 void add_verify_verb(CLI::App& app, Action& action) {
   CLI::App* verb = app.add_subcommand(
-      "verify", "Is each marked file of a run there, intact, carrying its message?");
+      "verify",
+      "Check that the marked files of a run exist, are unchanged and carry their message");
   auto arguments = std::make_shared<VerifyArguments>();
   verb->add_option("records", arguments->records, "Records written by mark --records")
       ->required()
       ->type_name("RECORDS");
-  verb->add_flag("--json", arguments->json, "One JSON object a record");
-  verb->add_flag("--detail", arguments->detail,
-                 "Say which units are damaged and where, if the record names them (iie, or mark "
-                 "--detail)");
+  verb->add_flag("--json", arguments->json, "Print one JSON object per record");
+  verb->add_flag(
+      "--detail", arguments->detail,
+      "Report which units are damaged, and where, if the record lists units (always with iie; "
+      "otherwise with mark --detail)");
   arguments->key.add_to(*verb);
   arguments->machine.add_threads_to(*verb);
   arguments->machine.add_memory_to(*verb);

@@ -91,14 +91,16 @@ void draw_pair(const Arguments& arguments, const fs::path& original, const fs::p
   draw_all(MeshFile::open(marked).mesh());
 }
 
-volatile std::sig_atomic_t is_told_to_stop = 0;
+volatile std::sig_atomic_t stop_requested = 0;
 
-// One JSON object a line on standard input: {"original", "marked", "out"}.
+// Reads one JSON object per line from standard input: {"original", "marked", "out"}.
 int draw_batch(const Arguments& arguments) {
-  std::signal(SIGTERM, [](int) { is_told_to_stop = 1; });  // between pictures, so none is torn
+  std::signal(SIGTERM, [](int) {
+    stop_requested = 1;
+  });  // takes effect between pictures, so that none is incomplete
   int code = 0;
   std::size_t number = 0;
-  for (std::string line; is_told_to_stop == 0 && std::getline(std::cin, line);) {
+  for (std::string line; stop_requested == 0 && std::getline(std::cin, line);) {
     ++number;
     try {
       const auto job = nlohmann::json::parse(line);
@@ -109,7 +111,7 @@ int draw_batch(const Arguments& arguments) {
       code = kSomeFailed;
     }
   }
-  return is_told_to_stop == 0 ? code : kSomeFailed;
+  return stop_requested == 0 ? code : kSomeFailed;
 }
 
 int run(Arguments arguments) {
@@ -134,40 +136,53 @@ std::vector<std::string> strings(std::span<const std::string_view> names) {
 }
 
 void add_options(CLI::App& app, Arguments& arguments) {
-  app.add_option("original", arguments.original, "Mesh");
-  app.add_option("marked", arguments.marked, "Mesh to compare with it");
-  app.add_option("--out", arguments.out, "Picture: .png, .jpg or .exr")->type_name("FILE");
+  app.add_option("original", arguments.original, "Original mesh")->type_name("MESH");
+  app.add_option("marked", arguments.marked, "Mesh to compare with the original")
+      ->type_name("MESH");
+  app.add_option("--out", arguments.out, "Picture to write: .png, .jpg or .exr")->type_name("FILE");
   auto* panels = app.add_option("--panels", arguments.panels,
-                                "1 to 6, separated by commas [original,facets,distance,worst]: " +
-                                    CLI::detail::join(strings(panel_names())))
+                                "1 to 6 panels, separated by commas: " +
+                                    CLI::detail::join(strings(panel_names()), ", ") +
+                                    " (default: original,facets,distance,worst)")
                      ->delimiter(',')
-                     ->check(CLI::IsMember(strings(panel_names())));
+                     ->check(CLI::IsMember(strings(panel_names())).description(""))
+                     ->type_name("NAME");
   app.add_option("--paper-figure", arguments.paper_figure,
-                 "Mark the mesh under this scheme without and with optimisation and draw both")
-      ->check(CLI::IsMember(strings(scheme_names())))
+                 "Draw the mesh, and its mark in this scheme without and with optimisation")
+      ->check(CLI::IsMember(strings(scheme_names())).description(""))
+      ->type_name(CLI::detail::join(strings(scheme_names()), "|"))
       ->excludes(panels);
-  app.add_option("--width", arguments.picture.width, "Of a panel, pixels")->capture_default_str();
-  app.add_option("--height", arguments.picture.height, "Of a panel, pixels")->capture_default_str();
-  app.add_option("--samples", arguments.picture.samples, "Rays a pixel")->capture_default_str();
+  app.add_option("--width", arguments.picture.width, "Width of a panel in pixels (default: 640)")
+      ->type_name("N");
+  app.add_option("--height", arguments.picture.height,
+                 "Height of a panel in pixels (default: as the mesh requires)")
+      ->type_name("N");
+  app.add_option("--samples", arguments.picture.samples, "Rays per pixel (default: 16)")
+      ->type_name("N");
   app.add_option("--view", arguments.picture.view,
-                 "auto, front, back, left, right, top, bottom or AZIMUTH,ELEVATION in degrees; "
-                 "with -z at the end the z axis points up")
-      ->capture_default_str();
-  app.add_option("--turntable", arguments.turntable, "Draw so many views all round, FILE-000 ...")
-      ->check(CLI::Range(1, 999));
-  app.add_option("--background", arguments.background, "white, transparent or RRGGBB")
-      ->capture_default_str();
+                 "auto, front, back, left, right, top, bottom, or AZIMUTH,ELEVATION in degrees;\n"
+                 "with -z at the end the z axis points up (default: auto)")
+      ->type_name("VIEW");
+  app.add_option("--turntable", arguments.turntable,
+                 "Number of views all round, written to FILE-000 .. (1 to 999)")
+      ->check(CLI::Range(1, 999).description(""))
+      ->type_name("N");
+  app.add_option("--background", arguments.background,
+                 "white, transparent or RRGGBB (default: white)")
+      ->type_name("COLOUR");
   app.add_flag("--flat", arguments.picture.is_flat, "Shade every facet flat");
-  app.add_option("--threads", arguments.threads, "Threads to use [all]")
-      ->check(CLI::Range(1, 1024));
+  app.add_option("--threads", arguments.threads, "Threads to use (1 to 1024; default: all)")
+      ->check(CLI::Range(1, 1024).description(""))
+      ->type_name("N");
   app.add_flag("--batch", arguments.batch,
-               "Draw pairs from standard input, a line each: {\"original\", \"marked\", \"out\"}");
+               "Draw the pairs that standard input lists, one JSON object per line:\n"
+               "{\"original\": MESH, \"marked\": MESH, \"out\": FILE}");
 }
 
 }  // namespace
 
 int run_render_app(int argc, char** argv) try {
-  CLI::App app("Draws meshes beside each other, without a display.", "triglyph render");
+  CLI::App app("Draws meshes side by side, without a display.", "triglyph render");
   Arguments arguments;
   add_options(app, arguments);
   try {

@@ -10,7 +10,8 @@
 namespace triglyph {
 namespace {
 
-// Whole numbers beyond this are not exact as doubles, and no option counts that far.
+// A bound from here on means that there is none: doubles do not represent every whole number
+// beyond.
 constexpr double kLargestCount = 9007199254740992.0;  // 2^53
 
 std::string shortest(double value) {
@@ -61,23 +62,30 @@ std::string OptionSpec::domain() const {
     case OptionKind::Number:
       break;
   }
-  std::string text = kind == OptionKind::Count ? "a whole number" : "a number";
-  const bool has_least = is_finite_bound(range.least);
+  const std::string_view preposition = range.above_least             ? " "
+                                       : is_finite_bound(range.most) ? " from "
+                                                                     : " of ";
+  return (kind == OptionKind::Count ? "a whole number" : "a number") + std::string(preposition) +
+         range_text();
+}
+
+std::string OptionSpec::range_text() const {
+  if (kind != OptionKind::Count && kind != OptionKind::Number) return "";
+  const auto bound_text = [&](double bound) {
+    return kind == OptionKind::Count ? std::to_string(static_cast<std::int64_t>(bound))
+                                     : shortest(bound);
+  };
   const bool has_most = is_finite_bound(range.most);
-  if (has_least && has_most) {
-    text += (range.above_least ? " above " : " from ") + shortest(range.least) + " to " +
-            shortest(range.most);
-  } else if (has_least) {
-    text += (range.above_least ? " above " : " of at least ") + shortest(range.least);
-  }
-  if (!unit.empty()) text += ", in " + unit;
-  return text;
+  std::string text = range.above_least ? "above " : has_most ? "" : "at least ";
+  text += bound_text(range.least);
+  if (has_most) text += " to " + bound_text(range.most);
+  return unit.empty() ? text : text + " " + unit;
 }
 
 OptionValue OptionSpec::checked(const OptionValue& value) const {
   const auto refuse = [&]() -> OptionValue {
     throw Error(ErrorCode::Usage, {}, "",
-                "\"" + key + "\" is " + domain() + ", not " + to_text(value));
+                "\"" + key + "\" must be " + domain() + ", not " + to_text(value));
   };
   switch (kind) {
     case OptionKind::Flag:

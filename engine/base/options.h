@@ -1,5 +1,5 @@
-// Options declared once: key, range, unit, choices and help of each, and where its value is kept.
-// Command line, config files, manifests, records and help all read these declarations; a value
+// Declarations of options: key, range, unit, choices and help, and the member that holds the value.
+// Command line, config files, manifests, records and help all read these declarations, so a value
 // means the same in each of them.
 #pragma once
 
@@ -18,7 +18,7 @@
 
 namespace triglyph {
 
-// A value as it is written down: in the units that the option declares.
+// A value as users write it, in the unit that the option declares.
 using OptionValue = std::variant<bool, std::int64_t, double, std::string>;
 
 // Values by key.
@@ -41,35 +41,40 @@ struct OptionRange {
 struct OptionSpec {
   std::string key;  // "max_move" in manifests, config files and records
   OptionKind kind = OptionKind::Text;
-  std::string unit;                  // of a number; empty: none
-  OptionRange range;                 // of counts and numbers
-  std::vector<std::string> choices;  // of a choice
-  std::string default_text;          // what applies if the user says nothing
+  std::string unit;                  // of Count and Number, in the plural ("bits"); empty: none
+  OptionRange range;                 // of Count and Number
+  std::vector<std::string> choices;  // of Choice
+  std::string default_text;          // the default as help shows it; empty: none
   std::string help;                  // one line, a verb or noun phrase without a full stop
 
   // Returns "--max-move".
   [[nodiscard]] std::string flag() const;
 
-  // Returns the type, range or choices in words: "0 to 100 percent of the diagonal".
+  // Returns the allowed values in words, as error messages show them: "a whole number from 0 to 16
+  // bits", "one of tsq, aie, iie".
   [[nodiscard]] std::string domain() const;
 
-  // Returns the value as this option's kind: a whole number also serves as a real one. Throws
-  // Error Usage naming the key for another type or a value outside the range.
+  // Returns the range and unit of a Count or Number in short form, as help shows them: "0 to 16
+  // bits", "above 0 to 0.5". Empty for other kinds.
+  [[nodiscard]] std::string range_text() const;
+
+  // Returns the value converted to this option's kind; a Number also accepts whole numbers. Throws
+  // Error Usage naming the key if the type is wrong or the value is out of range.
   [[nodiscard]] OptionValue checked(const OptionValue& value) const;
 
-  // Reads the value from text, as on the command line. Throws Error Usage as checked() does.
+  // Parses a value from text, as on the command line. Throws Error Usage as checked() does.
   [[nodiscard]] OptionValue parsed(std::string_view text) const;
 };
 
-// Returns the value as text, which parsed() reads back; numbers in the shortest form.
+// Returns the value as text that parsed() reads back; numbers in the shortest such form.
 [[nodiscard]] std::string to_text(const OptionValue& value);
 
-// An option and its place in `Settings`.
+// An option, with access to its value in `Settings`.
 template <typename Settings>
 struct Option {
   OptionSpec spec;
-  std::function<void(Settings&, const OptionValue&)> set;  // of a checked value
-  // Returns nothing where no value was chosen and another place decides.
+  std::function<void(Settings&, const OptionValue&)> set;  // takes a checked value
+  // Returns nothing if the option is optional and has no value.
   std::function<std::optional<OptionValue>(const Settings&)> get;
 };
 
@@ -87,7 +92,8 @@ struct Unwrapped<std::optional<T>> {
   using type = T;
 };
 
-// An option kept in a plain or optional member, converted from Stored by the cast.
+// Declares an option that is held in a plain or optional member and converted from Stored by
+// static_cast.
 template <typename Settings, typename Base, typename Member, typename Stored>
 Option<Settings> member_option(OptionSpec spec, Member Base::*member, Stored) {
   using Value = typename Unwrapped<Member>::type;
@@ -107,7 +113,8 @@ Option<Settings> member_option(OptionSpec spec, Member Base::*member, Stored) {
 
 }  // namespace detail
 
-// Options kept in a member of `Settings` or of its base, plain or std::optional.
+// Declare an option that is held in a member of `Settings` or of its base class, plain or
+// std::optional.
 template <typename Settings, typename Base, typename Member>
 [[nodiscard]] Option<Settings> flag_option(std::string key, Member Base::*member,
                                            std::string help) {
@@ -141,8 +148,8 @@ template <typename Settings, typename Base, typename Member>
                                          member, double{});
 }
 
-// An option whose value is an enumeration, kept in a plain or optional member: entry i of `names`
-// is the name of the enumerator with value i.
+// Declares an option whose value is an enumeration, held in a plain or optional member. names[i] is
+// the name of the enumerator with value i.
 template <typename Settings, typename Base, typename Member>
 [[nodiscard]] Option<Settings> choice_option(std::string key, Member Base::*member,
                                              std::span<const std::string_view> names,
@@ -167,7 +174,7 @@ template <typename Settings, typename Base, typename Member>
           }};
 }
 
-// Returns the option with this key, or null. O(options).
+// Returns the option with this key, or null if there is none. O(options).
 template <typename Settings>
 [[nodiscard]] const Option<Settings>* find_option(const OptionTable<Settings>& table,
                                                   std::string_view key) {
@@ -177,7 +184,8 @@ template <typename Settings>
   return nullptr;
 }
 
-// Applies the values whose keys the table has. Throws Error Usage for a value that is out of range.
+// Sets the options whose keys occur in `values`; ignores keys that the table does not have. Throws
+// Error Usage for a value of the wrong type or out of range.
 template <typename Settings>
 void apply_options(const OptionTable<Settings>& table, const OptionValues& values,
                    Settings& settings) {
@@ -187,7 +195,7 @@ void apply_options(const OptionTable<Settings>& table, const OptionValues& value
   }
 }
 
-// Returns the values that the settings hold, by key.
+// Returns the values of all options that have one.
 template <typename Settings>
 [[nodiscard]] OptionValues option_values(const OptionTable<Settings>& table,
                                          const Settings& settings) {

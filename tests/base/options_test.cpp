@@ -92,7 +92,19 @@ TEST(Options, TextIsReadAsTheOptionsKind) {
     EXPECT_FALSE(to_text(value).empty());
   }
   EXPECT_EQ(find_option(table(), "line_width")->spec.flag(), "--line-width");
-  EXPECT_EQ(find_option(table(), "line_width")->spec.domain(), "a number above 0 to 5, in mm");
+}
+
+TEST(Options, SayTheirRangeInWords) {
+  const auto spec = [](const char* key) { return find_option(table(), key)->spec; };
+  EXPECT_EQ(spec("line_width").domain(), "a number above 0 to 5 mm");
+  EXPECT_EQ(spec("line_width").range_text(), "above 0 to 5 mm");
+  EXPECT_EQ(spec("count").domain(), "a whole number from 1 to 9");
+  EXPECT_EQ(spec("colour").domain(), "one of red, green");
+  EXPECT_EQ(spec("colour").range_text(), "");
+  OptionSpec open{"size", OptionKind::Count, "rings", {2, 1e6}, {}, "", "Size"};
+  EXPECT_EQ(open.range_text(), "2 to 1000000 rings");
+  open.range = {2};
+  EXPECT_EQ(open.domain(), "a whole number of at least 2 rings");
 }
 
 }  // namespace
