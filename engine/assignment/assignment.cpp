@@ -1,5 +1,5 @@
 // This work is based on:
-//  - K. Wang, S.-M. Hu: Optimization approach for 3D model watermarking by linear binary
+//  - Y.-P. Wang, S.-M. Hu: Optimization approach for 3D model watermarking by linear binary
 //    programming, CAGD 27 (2010): the un-optimised order of figure 1.
 #include "engine/assignment/assignment.h"
 
@@ -11,8 +11,8 @@
 
 namespace triglyph {
 
-Assignment weigh_assignment(const CostMatrix& costs, std::vector<std::uint32_t> word_of_unit) {
-  check(word_of_unit.size() == costs.units, "one word a unit");
+Assignment evaluate_assignment(const CostMatrix& costs, std::vector<std::uint32_t> word_of_unit) {
+  check(word_of_unit.size() == costs.units, "one word per unit");
   Assignment result;
   for (std::uint32_t unit = 0; unit < costs.units; ++unit) {
     if (word_of_unit[unit] == kNoWord) continue;
@@ -27,11 +27,11 @@ Assignment weigh_assignment(const CostMatrix& costs, std::vector<std::uint32_t> 
 }
 
 Assignment assign_sequential(const CostMatrix& costs, std::span<const std::uint32_t> demand) {
-  check(demand.size() == costs.words, "one demand a word");
+  check(demand.size() == costs.words, "one demand per word");
   check(costs.values.size() == static_cast<std::size_t>(costs.units) * costs.words,
-        "one cost a pair");
+        "one cost per pair");
   std::vector<std::uint32_t> word_of_unit(costs.units, kNoWord);
-  std::vector<std::uint32_t> round;  // words still wanted in this round
+  std::vector<std::uint32_t> round;  // words with demand left in this round
   for (std::uint32_t word = 0; word < costs.words; ++word) {
     if (demand[word] > 0) round.push_back(word);
   }
@@ -42,7 +42,7 @@ Assignment assign_sequential(const CostMatrix& costs, std::span<const std::uint3
     }
     std::erase_if(round, [&](std::uint32_t word) { return demand[word] <= rounds_done + 1; });
   }
-  return weigh_assignment(costs, std::move(word_of_unit));
+  return evaluate_assignment(costs, std::move(word_of_unit));
 }
 
 }  // namespace triglyph

@@ -4,11 +4,11 @@
 //  - D. R. Fulkerson, I. Glicksberg, O. Gross: A production line assignment problem, 1953 (bounds
 //    from the minima of rows and columns).
 // Deviations:
-//  1. The threshold starts at a lower bound that is often the answer, and from the largest matching
-//     there it rises only to the least cost that lets the alternating forest grow: every step is
-//     forced, so the last one is the optimum. Halving of the interval is kept for the case that the
-//     bound was poor and many units are missing.
-//  2. Words are wanted several times, and not every copy can always be served.
+//  1. The threshold starts at a lower bound, which is often the optimum. From a maximum matching
+//     there it rises only to the least cost that lets an alternating forest grow. Every rise is
+//     necessary, so the last one gives the optimum. Bisection remains for the case that the bound
+//     is poor and many units are unmatched.
+//  2. A word may have several copies, and not every copy can always be placed.
 #include <algorithm>
 #include <bit>
 #include <limits>
@@ -24,9 +24,10 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kAllFinite = std::numeric_limits<float>::max();
-constexpr std::uint32_t kFewMissing = 4;  // units; forests for these are cheaper than halving
+// Unmatched units for which growing forests is cheaper than bisection.
+constexpr std::uint32_t kFewMissing = 4;
 
-// The cheapest word of every unit, over the words with is_chosen[word] == choice.
+// Returns the least cost of every unit over the words with is_chosen[word] == choice.
 std::vector<float> find_unit_minima(const CostMatrix& costs,
                                     std::span<const std::uint8_t> is_chosen, std::uint8_t choice) {
   std::vector<float> minima(costs.units, kInfinity);
@@ -51,7 +52,8 @@ float nth_smallest(std::vector<float>& values, std::size_t n) {
   return *nth;
 }
 
-// A scarce unit is always used, so no maximum is below its cheapest scarce word.
+// Returns a lower bound: a scarce unit is always used, so the maximum is at least its cheapest
+// scarce word.
 float bound_by_scarce_units(const CostMatrix& costs, const Scarcity& scarcity) {
   const std::vector<float> minima = find_unit_minima(costs, scarcity.is_scarce_word, 1);
   float bound = 0;
@@ -61,8 +63,8 @@ float bound_by_scarce_units(const CostMatrix& costs, const Scarcity& scarcity) {
   return bound;
 }
 
-// Every copy of the other words is served: a word wanted d times takes a unit that is no better
-// than its d-th best, and all of them together, k copies, one that is no better than the k-th.
+// Returns a lower bound: all copies of the other words are placed, so a word with d copies takes a
+// unit no better than its d-th best, and k copies together take one no better than the k-th best.
 float bound_by_served_words(const CostMatrix& costs, std::span<const std::uint32_t> demand,
                             const Scarcity& scarcity) {
   std::vector<float> bounds(costs.words, 0.0F);
@@ -120,13 +122,14 @@ float find_maximum(const CostMatrix& costs, const Matching& matching) {
 }
 
 struct Threshold {
-  float value = 0;    // no matching of the wanted size has a smaller maximum
+  float value = 0;    // lower bound of the maximum of any matching of the wanted size
   Matching matching;  // a maximum matching at that value
 };
 
-// Halves the interval of possible thresholds, in the order of the floats themselves, until only a
-// few units are missing at the lower end.
-Threshold narrow(const CostMatrix& costs, Threshold lower, float upper, std::uint32_t wanted) {
+// Bisects the interval of possible thresholds, in the order of the floats' bit patterns, until only
+// a few units are unmatched at the lower end.
+Threshold bisect_threshold(const CostMatrix& costs, Threshold lower, float upper,
+                           std::uint32_t wanted) {
   // The bit patterns of floats >= 0 are ordered like the floats.
   auto low = std::bit_cast<std::uint32_t>(lower.value);
   auto high = std::bit_cast<std::uint32_t>(upper);
@@ -144,8 +147,9 @@ Threshold narrow(const CostMatrix& costs, Threshold lower, float upper, std::uin
   return lower;
 }
 
-// An alternating forest from every unserved copy that grows over pairs within the threshold and
-// raises it, when stuck, to the least cost of a pair that leaves the forest.
+// An alternating forest that is rooted at the unserved copies and grows over pairs within the
+// threshold. When no pair is left it raises the threshold to the least cost of a pair that leaves
+// the forest.
 class Forest {
  public:
   Forest(const CostMatrix& costs, Threshold& threshold)
@@ -156,7 +160,7 @@ class Forest {
         word_is_in_(costs.words, 0),
         unit_of_word_(costs.words, 0) {}
 
-  // Enlarges the matching by one pair. Returns false, with the threshold as it was, if none fits.
+  // Enlarges the matching by one pair. Returns false if no augmenting path exists.
   bool augment() {
     for (std::uint32_t word = 0; word < costs_.words; ++word) {
       if (threshold_.matching.unserved[word] > 0) add_word(word);
@@ -210,10 +214,10 @@ class Forest {
 
   const CostMatrix& costs_;
   Threshold& threshold_;
-  std::vector<float> slack_;             // cheapest pair with a word of the forest
+  std::vector<float> slack_;             // least cost of a unit with a word of the forest; kIsIn
   std::vector<std::uint32_t> cheapest_;  // that word
   std::vector<std::uint8_t> word_is_in_;
-  std::vector<std::uint32_t> unit_of_word_;  // through which it came in
+  std::vector<std::uint32_t> unit_of_word_;  // through which a word joined the forest
 };
 
 }  // namespace
@@ -226,12 +230,13 @@ Assignment assign_bottleneck(const CostMatrix& costs, std::span<const std::uint3
   const PairGraph at_bound = find_pairs_within(costs, threshold.value);
   threshold.matching = grow_maximum_matching(at_bound, empty_matching(costs.units, demand));
   if (threshold.matching.matched < largest.matched) {
-    threshold = narrow(costs, std::move(threshold), find_maximum(costs, largest), largest.matched);
+    threshold = bisect_threshold(costs, std::move(threshold), find_maximum(costs, largest),
+                                 largest.matched);
     while (threshold.matching.matched < largest.matched) Forest(costs, threshold).augment();
   }
   const PairGraph graph = find_pairs_within(costs, threshold.value);
-  return weigh_assignment(costs,
-                          minimise_sum(costs, demand, threshold.value, graph, threshold.matching));
+  return evaluate_assignment(
+      costs, minimise_sum(costs, demand, threshold.value, graph, threshold.matching));
 }
 
 }  // namespace triglyph

@@ -9,9 +9,9 @@ namespace triglyph {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr std::size_t kLanes = 8;
-constexpr std::size_t kChunksPerWanted = 2;  // more sharpen the cut, fewer make it cheaper
-constexpr std::size_t kTiesPerWanted = 2;    // equally good units listed before we cut
+constexpr std::size_t kLanes = 8;            // independent minima, so that the loop vectorises
+constexpr std::size_t kChunksPerWanted = 2;  // more give a sharper cut, fewer a cheaper one
+constexpr std::size_t kTiesPerWanted = 2;    // most tied units in a list, per pair wanted
 
 double key_of(float cost, double price) {
   return static_cast<double>(cost) + price;
@@ -32,7 +32,7 @@ std::vector<double> find_chunk_minima(std::span<const float> column, std::span<c
   std::vector<double> minima((column.size() + length - 1) / length);
   for (std::size_t chunk = 0; chunk < minima.size(); ++chunk) {
     const std::size_t end = std::min(column.size(), (chunk + 1) * length);
-    // lanes of their own: a single running minimum cannot be vectorised
+    // separate lanes: a single running minimum cannot be vectorised
     std::array<double, kLanes> least;
     least.fill(kInfinity);
     std::size_t unit = chunk * length;
@@ -53,9 +53,9 @@ std::vector<double> find_chunk_minima(std::span<const float> column, std::span<c
 }  // namespace
 
 // The wanted-th smallest of the chunks' minima is a cut with at least `wanted` pairs at or below
-// it, found without ordering the column. Units that tie at the cut are collected from a place that
-// differs from word to word: words that all like the same thousand units alike (units whose cost
-// hardly depends on the word) then list different ones of them.
+// it, found without sorting the column. Units that tie at the cut are collected from a start that
+// differs between words: if a thousand units cost the same under every word, words then list
+// different ones.
 CandidateList pick_candidates(std::span<const float> column, std::span<const double> prices,
                               const CandidateQuery& query) {
   const std::size_t length =

@@ -1,5 +1,4 @@
-// The few pairs of a word that can matter, picked from its column of the cost matrix, with a bound
-// on all the others.
+// Candidate lists: the cheapest pairs of a word, with a lower bound on all its other pairs.
 #pragma once
 
 #include <cstdint>
@@ -15,17 +14,17 @@ struct Candidate {
 
 struct CandidateList {
   std::vector<Candidate> pairs;
-  double bound = 0;  // every pair left out has cost + price >= bound; infinite if none is left out
+  double bound = 0;  // all other pairs have cost + price >= bound; infinite if there are none
 };
 
 struct CandidateQuery {
-  std::size_t wanted = 16;   // at least so many pairs, if there are as many
-  std::uint64_t spread = 0;  // where the search for equally good units starts; any number
+  std::size_t wanted = 16;   // least number of pairs to list
+  std::uint64_t spread = 0;  // selects where the search among tied units starts; any number
 };
 
-// The pairs with the least cost + price. A price of +infinity takes a unit out. The list holds
-// `wanted` pairs or all there are; more than that by a small factor unless cheap units sit next
-// to each other. Precondition: column.size() == prices.size(). O(units), two sweeps.
+// Returns the pairs with the least cost + price: at least `wanted` or all there are, and up to a
+// small factor more unless cheap units are adjacent. A price of +infinity excludes a unit.
+// Precondition: column.size() == prices.size(). O(units), two sweeps.
 [[nodiscard]] CandidateList pick_candidates(std::span<const float> column,
                                             std::span<const double> prices,
                                             const CandidateQuery& query);

@@ -1,4 +1,4 @@
-// Costs of putting each watermark word (column) into each invariant unit (row).
+// The cost matrix: the cost of each invariant unit (row) carrying each watermark word (column).
 #pragma once
 
 #include <cstdint>

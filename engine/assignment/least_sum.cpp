@@ -1,8 +1,8 @@
 // This work is based on:
-//  - A. L. Dulmage, N. S. Mendelsohn: Coverings of bipartite graphs, 1958: where not every copy of
-//    every word can be served, the words that compete for too few units and all the others are two
-//    problems of their own, in each of which one side is served completely. That settles which
-//    copies go without, by least sum, and needs no penalty large enough to drown the costs.
+//  - A. L. Dulmage, N. S. Mendelsohn: Coverings of bipartite graphs, 1958. If not every copy of
+//    every word can be placed, the problem splits into two: the words that compete for too few
+//    units, and all others. In each, one side is served completely. Which copies are left over then
+//    follows from the least sum, without a penalty so large that it would swamp the costs.
 #include "engine/assignment/least_sum.h"
 
 #include <atomic>
@@ -25,7 +25,7 @@ std::uint64_t count_copies(std::span<const std::uint32_t> demand) {
 
 constexpr float kAllFinite = std::numeric_limits<float>::max();
 
-// Infinite where the costs are above the limit.
+// Returns the costs with those above the limit replaced by infinity.
 CostMatrix mask_above(const CostMatrix& costs, float limit) {
   CostMatrix masked{costs.units, costs.words, std::vector<float>(costs.values.size(), kInfeasible)};
   parallel_blocks(costs.values.size(), [&](std::size_t begin, std::size_t end) {
@@ -39,9 +39,9 @@ CostMatrix mask_above(const CostMatrix& costs, float limit) {
 }  // namespace
 
 void check_costs(const CostMatrix& costs, std::span<const std::uint32_t> demand) {
-  check(demand.size() == costs.words, "one demand a word");
+  check(demand.size() == costs.words, "one demand per word");
   check(costs.values.size() == static_cast<std::size_t>(costs.units) * costs.words,
-        "one cost a pair");
+        "one cost per pair");
   std::atomic<bool> is_good = true;
   parallel_for(
       costs.words,
@@ -89,7 +89,7 @@ Assignment assign_least_sum(const CostMatrix& costs, std::span<const std::uint32
   check_costs(costs, demand);
   const PairGraph graph = find_pairs_within(costs, kAllFinite);
   const Matching maximum = grow_maximum_matching(graph, empty_matching(costs.units, demand));
-  return weigh_assignment(costs, minimise_sum(costs, demand, kAllFinite, graph, maximum));
+  return evaluate_assignment(costs, minimise_sum(costs, demand, kAllFinite, graph, maximum));
 }
 
 }  // namespace triglyph

@@ -1,4 +1,4 @@
-// The least sum among the matchings of maximum size within a limit; the second half of both
+// The maximum matching of least sum of costs among pairs within a limit, the second stage of both
 // optimal assignments.
 #pragma once
 
@@ -11,14 +11,16 @@
 
 namespace triglyph {
 
-// Word of every unit for as many pairs as `maximum` has, of least sum. Preconditions: `graph` holds
-// the pairs with cost <= limit, `maximum` is a maximum matching of it, limit is finite.
+// Returns the word of every unit, kNoWord if it stays free, for a matching of least sum with as
+// many pairs as `maximum`. Preconditions: `graph` holds the pairs with cost <= limit, `maximum` is
+// a maximum matching of it, and the limit is finite. Complexity as for solve_transport().
 [[nodiscard]] std::vector<std::uint32_t> minimise_sum(const CostMatrix& costs,
                                                       std::span<const std::uint32_t> demand,
                                                       float limit, const PairGraph& graph,
                                                       const Matching& maximum);
 
-// Throws std::logic_error where the sizes do not fit or a cost is negative or NaN.
+// Throws std::logic_error if sizes do not match, or if a cost is negative or NaN. O(units * words),
+// parallel.
 void check_costs(const CostMatrix& costs, std::span<const std::uint32_t> demand);
 
 }  // namespace triglyph

@@ -1,6 +1,6 @@
 // This work is based on:
 //  - J. E. Hopcroft, R. M. Karp: An n^(5/2) algorithm for maximum matchings in bipartite graphs,
-//    1973; here with words that are wanted several times and 64 units to a machine word.
+//    1973; here a word may be matched several times, and 64 units share a machine word.
 //  - A. L. Dulmage, N. S. Mendelsohn: Coverings of bipartite graphs, 1958.
 #include "engine/assignment/matching.h"
 
@@ -23,11 +23,11 @@ std::vector<std::uint64_t> all_ones(std::uint32_t units) {
   return bits;
 }
 
-// Distance of every word, in words, from the unserved ones along alternating paths; units_left
-// loses every unit that was reached.
+// Breadth-first layers: the distance of every word, counted in words, from the unserved words along
+// alternating paths. find_layers() removes every unit that it reaches from units_left.
 struct Layers {
   std::vector<std::uint32_t> layer_of_word;
-  std::uint32_t last_layer = kUnreached;  // the nearest that sees a free unit
+  std::uint32_t last_layer = kUnreached;  // the first with a free unit in reach
 };
 
 Layers find_layers(const PairGraph& graph, const Matching& matching,
@@ -62,8 +62,8 @@ Layers find_layers(const PairGraph& graph, const Matching& matching,
   return layers;
 }
 
-// Looks for alternating paths that go one layer down at every step. Each unit is tried once a
-// phase and each word's row is walked once a phase, wherever the walk was left off.
+// Finds augmenting paths that descend one layer at every step. Each unit is tried once per phase,
+// and the scan of a word's row resumes where it stopped, so each row is scanned once per phase.
 class PathFinder {
  public:
   PathFinder(const PairGraph& graph, const Layers& layers, Matching& matching)
@@ -127,7 +127,8 @@ class PathFinder {
   std::vector<Step> path_;
 };
 
-// Gives every word free units while there are any; Hopcroft and Karp's phases do the rest.
+// Gives words free units as long as there are any; the phases of Hopcroft and Karp complete the
+// matching.
 void match_greedily(const PairGraph& graph, Matching& matching) {
   std::vector<std::uint64_t> free = all_ones(graph.units());
   for (std::uint32_t unit = 0; unit < graph.units(); ++unit) {

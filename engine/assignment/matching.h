@@ -1,4 +1,5 @@
-// Matchings over the pairs whose cost is at most a limit, without regard to what they cost.
+// Maximum matchings over the pairs whose cost is within a limit, regardless of the costs
+// themselves.
 #pragma once
 
 #include <algorithm>
@@ -11,11 +12,11 @@
 
 namespace triglyph {
 
-// A set of pairs, one bit each: a sweep over the units of a word handles 64 at a time, and all of
-// it takes 1/32 of the matrix.
+// A set of (unit, word) pairs as a bit matrix. A sweep over the units of a word handles 64 at a
+// time, and the matrix takes 1/32 of the memory of the costs.
 class PairGraph {
  public:
-  // Without any pair.
+  // Starts with no pairs.
   PairGraph(std::uint32_t units, std::uint32_t words)
       : units_(units),
         words_(words),
@@ -24,12 +25,12 @@ class PairGraph {
 
   [[nodiscard]] std::uint32_t units() const { return units_; }
   [[nodiscard]] std::uint32_t words() const { return words_; }
-  // Bit unit % 64 of row(word)[unit / 64].
+  // Returns the units of a word: bit unit % 64 of element unit / 64.
   [[nodiscard]] std::span<const std::uint64_t> row(std::uint32_t word) const {
     return {bits_.data() + word * stride_, stride_};
   }
-  // Makes the row of a word hold the units for which has(unit) is true. Safe to call for several
-  // words at a time.
+  // Sets the row of a word to the units for which has(unit) is true. Safe to call from several
+  // threads for different words.
   template <typename Has>
   void set_row(std::uint32_t word, const Has& has) {
     std::uint64_t* row = bits_.data() + word * stride_;
@@ -50,29 +51,32 @@ class PairGraph {
   std::vector<std::uint64_t> bits_;
 };
 
-// The finite pairs with cost <= limit. O(units * words), in parallel.
+// Returns the pairs with finite cost <= limit. O(units * words), parallel.
 [[nodiscard]] PairGraph find_pairs_within(const CostMatrix& costs, float limit);
 
 struct Matching {
-  std::vector<std::uint32_t> word_of_unit;  // kNoWord where free
-  std::vector<std::uint32_t> unserved;      // copies of each word without a unit
-  std::uint32_t matched = 0;
+  std::vector<std::uint32_t> word_of_unit;  // kNoWord if free
+  std::vector<std::uint32_t> unserved;      // copies of each word that have no unit
+  std::uint32_t matched = 0;                // number of pairs
 };
 
+// Returns the matching without pairs.
 [[nodiscard]] Matching empty_matching(std::uint32_t units, std::span<const std::uint32_t> demand);
 
-// Enlarges `start`, whose pairs must all be in the graph, to as many pairs as possible.
-// O(E sqrt(V)) bit operations (Hopcroft & Karp 1973).
+// Returns a maximum matching of the graph, grown from `start`. Precondition: the pairs of `start`
+// are in the graph. O(E sqrt(V)) bit operations (Hopcroft & Karp 1973).
 [[nodiscard]] Matching grow_maximum_matching(const PairGraph& graph, Matching start);
 
-// The part of the graph in which words outnumber units (Dulmage & Mendelsohn 1958): every matching
-// of maximum size gives each scarce unit to a scarce word and serves every other word fully.
+// The overdetermined part of the Dulmage-Mendelsohn decomposition (1958): the words that compete
+// for too few units. Every maximum matching gives each scarce unit to a scarce word and places all
+// copies of every other word.
 struct Scarcity {
   std::vector<std::uint8_t> is_scarce_word;
   std::vector<std::uint8_t> is_scarce_unit;
 };
 
-// Precondition: `maximum` is a maximum matching of the graph. O(E) bit operations.
+// Returns the scarce words and units. Precondition: `maximum` is a maximum matching of the graph.
+// O(E) bit operations.
 [[nodiscard]] Scarcity find_scarcity(const PairGraph& graph, const Matching& maximum);
 
 }  // namespace triglyph

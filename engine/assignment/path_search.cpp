@@ -2,8 +2,8 @@
 //  - E. W. Dijkstra: A note on two problems in connexion with graphs, 1959.
 //  - R. Jonker, A. Volgenant: A shortest augmenting path algorithm for dense and sparse linear
 //    assignment problems, 1987 (the search runs over reduced costs).
-// Deviation: the nodes are words, not units. The units a word holds are all at its own distance, so
-// the search is as large as the number of words, however many units there are.
+// Deviation: the nodes are words, not units. All units that a word holds have the distance of the
+// word, so the size of the search depends on the number of words and not on that of units.
 #include "engine/assignment/path_search.h"
 
 #include <algorithm>
@@ -14,8 +14,10 @@
 namespace triglyph {
 namespace {
 
-constexpr std::size_t kManyOpen = 8;  // a renewal costs about as much as a look at n / 8 open units
-constexpr std::size_t kLongList = 32;  // times the first list's width
+constexpr std::size_t kManyOpen = 8;  // renewing a list costs about as much as scanning n / 8 units
+// Multiple of its first width from which on a list is not renewed: scanning the open units costs
+// less.
+constexpr std::size_t kLongList = 32;
 
 }  // namespace
 
@@ -27,7 +29,7 @@ PathSearch::PathSearch(TransportState& state)
 
 bool PathSearch::is_closed(std::uint32_t unit) const {
   const std::uint32_t owner = state_.owner[unit];
-  return owner != kNobody ? is_visited_[owner] != 0 : state_.prices[unit] == kFar;
+  return owner != kNoIndex ? is_visited_[owner] != 0 : state_.prices[unit] == kFar;
 }
 
 void PathSearch::push(double distance, std::uint32_t code) {
@@ -45,14 +47,15 @@ void PathSearch::reach(std::uint32_t word, double distance, std::uint32_t from,
 void PathSearch::follow(std::uint32_t word, std::uint32_t unit, double distance) {
   if (distance >= end_.distance) return;
   const std::uint32_t owner = state_.owner[unit];
-  if (owner == kNobody) {
+  if (owner == kNoIndex) {
     end_ = {distance, word, unit};
   } else if (distance < reach_[owner].distance) {
     reach(owner, distance, word, unit);
   }
 }
 
-// Follows the candidates of a word to the words that hold them, to a free unit, to the reserve.
+// Relaxes the edges of a word: to the words that hold its candidates, to free units, to the
+// reserve.
 void PathSearch::visit(std::uint32_t word) {
   ++visits_;
   const TransportWord& w = state_.words[word];
@@ -67,16 +70,16 @@ void PathSearch::visit(std::uint32_t word) {
   }
   if (state_.reserve_size == 0) return;
   const double next = std::max(distance, base + state_.reserve_price);
-  if (state_.reserve_left > 0 && next < end_.distance) end_ = {next, word, kNobody};
+  if (state_.reserve_left > 0 && next < end_.distance) end_ = {next, word, kNoIndex};
   if (state_.reserve_left == 0 && next < reserve_reach_.distance) {
-    reserve_reach_ = {next, word, kNobody};
+    reserve_reach_ = {next, word, kNoIndex};
     push(next, static_cast<std::uint32_t>(2 * state_.words.size()));
   }
 }
 
-// The list of a word is used up. A new one serves later searches too; but where the search has
-// been almost everywhere, or the list has grown long already, looking at the units whose owner was
-// not visited yet costs less.
+// Continues beyond the candidate list of a word. A renewed list serves later searches too; but if
+// most words are visited, or the list is long already, scanning the units of unvisited words costs
+// less.
 void PathSearch::visit_beyond_list(std::uint32_t word) {
   const bool has_many_open = open_count_ * kManyOpen > state_.owner.size();
   if (has_many_open && state_.words[word].width < kLongList * state_.words[word].first_width) {
@@ -104,15 +107,15 @@ void PathSearch::visit_beyond_list(std::uint32_t word) {
 void PathSearch::visit_reserve() {
   for (std::uint32_t word = 0; word < state_.words.size(); ++word) {
     if (state_.words[word].in_reserve > 0 && reserve_reach_.distance < reach_[word].distance) {
-      reach(word, reserve_reach_.distance, reserve_reach_.from, kNobody);
+      reach(word, reserve_reach_.distance, reserve_reach_.from, kNoIndex);
     }
   }
 }
 
-// Dijkstra's search from a word that lacks a unit, over values and prices.
+// Dijkstra's algorithm over reduced costs, from a word with a copy to place.
 void PathSearch::serve(std::uint32_t source) {
   const auto count = static_cast<std::uint32_t>(state_.words.size());
-  reach(source, 0, kNobody, kNobody);
+  reach(source, 0, kNoIndex, kNoIndex);
   while (!heap_.empty()) {
     std::pop_heap(heap_.begin(), heap_.end());
     const Event event = heap_.back();
@@ -135,7 +138,7 @@ void PathSearch::serve(std::uint32_t source) {
   forget();
 }
 
-// Makes the pairs of the path as good as each word's best, and leaves no pair better than that.
+// Updates the dual values: the pairs of the path become tight, and all others stay feasible.
 void PathSearch::raise_values() {
   for (const std::uint32_t word : reached_) {
     const double rise = end_.distance - reach_[word].distance;
@@ -148,16 +151,16 @@ void PathSearch::raise_values() {
 
 void PathSearch::shift_along_path(std::uint32_t source) {
   for (Reach step = end_;; step = reach_[step.from]) {
-    // The word gets what the next word on the path, or nobody, gives up.
-    if (step.through != kNobody) {
+    // The word gets the unit that its successor on the path gives up, or a free one.
+    if (step.through != kNoIndex) {
       state_.give(step.through, step.from);
     } else {
       ++state_.words[step.from].in_reserve;
     }
     if (step.from == source) break;
-    if (reach_[step.from].through == kNobody) --state_.words[step.from].in_reserve;
+    if (reach_[step.from].through == kNoIndex) --state_.words[step.from].in_reserve;
   }
-  if (end_.through == kNobody) --state_.reserve_left;
+  if (end_.through == kNoIndex) --state_.reserve_left;
   --state_.words[source].deficit;
 }
 

@@ -1,4 +1,4 @@
-// The exact half of the transportation solver: shortest paths to a free unit.
+// Shortest augmenting paths to a free unit, the exact part of the transportation solver.
 #pragma once
 
 #include <cstdint>
@@ -11,30 +11,31 @@ namespace triglyph {
 
 class PathSearch {
  public:
-  // The state must outlive the search, and only be changed through it.
+  // `state` must outlive the search and may be changed only through it.
   explicit PathSearch(TransportState& state);
 
-  // Finds a unit, or room in the reserve, for one copy of the word at the least rise of the total
-  // cost. Precondition: the word lacks a copy and one side of the problem can be served, else
-  // std::logic_error. O(words log words + pairs listed) and now and then O(units).
+  // Places one copy of the word in a unit, or in the reserve, with the least increase of the total
+  // cost. Precondition: the word has a copy to place, and one side of the problem can be served
+  // completely, else std::logic_error. O(words log words + candidates), occasionally plus O(units).
   void serve(std::uint32_t source);
 
-  // Words visited by all searches so far.
+  // Returns the number of words visited by all searches so far.
   [[nodiscard]] std::size_t visits() const { return visits_; }
 
  private:
   static constexpr double kFar = std::numeric_limits<double>::infinity();
 
-  // How the search came to a word: through a unit it holds, or through its copy in the reserve.
+  // How the search reached a word: through a unit that it holds, or through its copy in the
+  // reserve.
   struct Reach {
     double distance = kFar;
-    std::uint32_t from = kNobody;
-    std::uint32_t through = kNobody;  // unit; kNobody for the reserve
+    std::uint32_t from = kNoIndex;
+    std::uint32_t through = kNoIndex;  // unit; kNoIndex for the reserve
   };
-  // What the search visits next. Words come before renewals at the same distance.
+  // An entry of the heap. At equal distance, words come before renewals of candidate lists.
   struct Event {
     double distance;
-    std::uint32_t code;  // word, or number of words + word to look beyond its list, or the reserve
+    std::uint32_t code;  // word; words + word: renewal of its list; 2 * words: the reserve
     bool operator<(const Event& other) const {
       return distance != other.distance ? distance > other.distance : code > other.code;
     }
@@ -56,9 +57,9 @@ class PathSearch {
   std::vector<std::uint8_t> is_visited_;
   std::vector<std::uint32_t> reached_;  // words to forget afterwards
   std::vector<Event> heap_;
-  std::vector<std::uint32_t> open_units_;  // all that a visited word does not hold, and some more
+  std::vector<std::uint32_t> open_units_;  // superset of the units that no visited word holds
   bool is_open_listed_ = false;
-  std::size_t open_count_ = 0;  // units no visited word holds
+  std::size_t open_count_ = 0;  // units that no visited word holds
   Reach reserve_reach_;
   bool is_reserve_visited_ = false;
   std::size_t visits_ = 0;

@@ -4,13 +4,13 @@
 //  - Y. Lee, J. B. Orlin: On very large-scale assignment problems, 1993 (work on the cheapest
 //    pairs, bring in the others when the dual values ask for them).
 // Deviations:
-//  1. Words are wanted several times, so a bid and a path end handle whole words: the graph that
-//     is searched has words for nodes, however many units there are.
-//  2. Prices only ever rise. A word's list of candidates made at any time therefore keeps its lower
-//     bound on all other pairs, and is renewed in the search when the path length reaches that
-//     bound: exact without a pricing pass at the end.
-//  3. Where costs tie, the bids start from a maximum matching of the tied pairs.
-//  4. Where searches turn out to be long, an auction with shrinking steps (D. P. Bertsekas: The
+//  1. A word has several copies, so bids and searches handle whole words: the nodes of the search
+//     graph are words, however many units there are.
+//  2. Prices never fall. The lower bound of a candidate list therefore stays valid, and the search
+//     renews the list when the path length reaches that bound. The result is exact without a final
+//     pricing pass.
+//  3. If many costs tie, the bids start from a maximum matching of the tied pairs.
+//  4. If the searches turn out to be long, an auction with epsilon scaling (D. P. Bertsekas: The
 //     auction algorithm, 1988) finds better prices first.
 #include "engine/assignment/transport.h"
 
@@ -29,13 +29,19 @@ namespace triglyph {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr std::size_t kManyTies = 2;  // best units a copy; distinct costs have hardly more than one
+// Tied best units per copy that make a matching worthwhile: distinct costs have hardly more than
+// one.
+constexpr std::size_t kManyTies = 2;
 constexpr std::uint32_t kBidsPerWord = 6;  // on average; more bids save few searches
-// An auction costs about as much as searches that visit each word some dozen times.
-constexpr std::size_t kPatience = 20;
-constexpr std::size_t kAuctionBidsPerWord = 40;  // a round ends sooner as a rule
-constexpr std::size_t kTurnsAhead = 64;
-constexpr double kFirstStep = 0.1;  // of the widest gap between a word's candidates
+// Visits per word after which the searches give way to an auction, which costs about as much as
+// some dozen visits per word.
+constexpr std::size_t kMostVisitsPerWord = 20;
+constexpr std::size_t kAuctionBidsPerWord = 40;  // an upper bound; a round usually ends sooner
+constexpr std::size_t kTurnsAhead = 64;          // enough lists to renew to keep the threads busy
+// The auction's steps (epsilon): the first and the last as a share of the widest gap between the
+// candidates of a word, and the factor between one round's and the next. A finer last step shortens
+// the searches that remain, at the cost of more rounds.
+constexpr double kFirstStep = 0.1;
 constexpr double kLastStep = 1e-4;
 constexpr double kStepRatio = 6;
 
@@ -45,14 +51,14 @@ struct Offer {
   float cost;
 };
 
-// What the word can see of its pairs now, and the value of the best one it would not get; false if
-// its list leaves out pairs that may be better.
+// The listed pairs of a word at current prices.
 struct Offers {
   std::vector<Offer> pairs;
-  double value = kInfinity;
+  double value = kInfinity;  // key of the best pair beyond the word's copies
 };
 
-bool look_at_list(const TransportState& state, std::uint32_t word, Offers& offers) {
+// Evaluates the list of a word. Returns false if pairs that it leaves out may be better.
+bool evaluate_list(const TransportState& state, std::uint32_t word, Offers& offers) {
   const TransportWord& w = state.words[word];
   const std::size_t copies = w.held.size() + w.deficit;
   offers.pairs.clear();
@@ -72,29 +78,29 @@ bool look_at_list(const TransportState& state, std::uint32_t word, Offers& offer
 }
 
 void refresh_list(TransportState& state, std::uint32_t word, double step, Offers& offers) {
-  while (!look_at_list(state, word, offers)) {
+  while (!evaluate_list(state, word, offers)) {
     step > 0 ? state.renew_short_list(word) : state.renew_list(word);
   }
 }
 
-// The word takes its best units at the value of the best one it does not get, and raises their
-// prices so that it likes them just as well, or less by `step`. It takes units from others only
-// where that raises the price; the words that lost a unit are appended to losers.
+// Lets a word bid: it takes its best units, and raises their prices until they are as dear to it as
+// the best unit it does not get, plus `step`. It takes a unit from another word only if that raises
+// the price. Words that lose a unit are appended to `losers`.
 void bid(TransportState& state, std::uint32_t word, double step, Offers& offers,
          std::vector<std::uint32_t>& losers) {
   TransportWord& w = state.words[word];
   refresh_list(state, word, step, offers);
   double value = offers.value;
   if (state.reserve_size > 0) value = std::min(value, state.reserve_price);
-  // Without a next best pair there is no price to raise: the search decides.
+  // Without a next best pair there is nothing to raise the price to: the search decides.
   if (value == kInfinity) value = w.value;
   for (const Offer& offer : offers.pairs) {
     const std::uint32_t before = state.owner[offer.unit];
-    const bool is_tied = offer.key == value && before != kNobody && step == 0;
+    const bool is_tied = offer.key == value && before != kNoIndex && step == 0;
     if (offer.key > value || is_tied) continue;
     if (before != word) {
-      if (w.deficit == 0) continue;  // only by rounding: there is one copy for each better unit
-      if (before != kNobody) {
+      if (w.deficit == 0) continue;  // by rounding only: there is a copy for each better unit
+      if (before != kNoIndex) {
         ++state.words[before].deficit;
         losers.push_back(before);
       }
@@ -106,8 +112,8 @@ void bid(TransportState& state, std::uint32_t word, double step, Offers& offers,
   w.value = std::max(w.value, value);
 }
 
-// The lists of the words whose turn comes next, renewed at the prices of now, which only rise: what
-// is renewed here seldom is when the turn comes.
+// Renews, in parallel, the lists of the words that bid next. Their bids seldom need to renew them
+// again, since prices never fall.
 void refresh_next(TransportState& state, std::span<const std::uint32_t> next, double step) {
   parallel_for(
       next.size(),
@@ -137,12 +143,12 @@ void bid_in_turns(TransportState& state, double step, std::size_t bids_per_word)
     }
     const std::uint32_t word = queue[head];
     if (state.words[word].deficit == 0) continue;
-    // A word that lost several units waits in the queue once for each; the first turn serves all.
+    // A word is queued once for each unit it lost; its first bid replaces them all.
     bid(state, word, step, offers, queue);
   }
 }
 
-// Whether the words like far more units best than they can use.
+// Returns whether the words have far more tied best units than copies.
 bool has_many_ties(const TransportState& state) {
   std::size_t copies = 0;
   std::size_t ties = 0;
@@ -155,8 +161,8 @@ bool has_many_ties(const TransportState& state) {
   return ties > kManyTies * copies;
 }
 
-// Gives each word as many of the units it likes best as can be done for all words together. Taken
-// one by one, words would take the units that suit everybody and leave those that suit only them.
+// Assigns words to their tied best units by a maximum matching. If words chose one after another,
+// they would take units that suit many words and leave those that suit only themselves.
 void match_ties(TransportState& state) {
   PairGraph graph(static_cast<std::uint32_t>(state.owner.size()),
                   static_cast<std::uint32_t>(state.words.size()));
@@ -178,22 +184,22 @@ void match_ties(TransportState& state) {
   }
 }
 
-// Searches for units for all copies that lack one; false if it gave up after visiting that many
-// words.
-bool serve_all(TransportState& state, std::size_t patience) {
+// Finds units for all copies that have none. Returns false if it stopped after `most_visits` visits
+// to words.
+bool serve_all(TransportState& state, std::size_t most_visits) {
   PathSearch search(state);
   for (std::uint32_t word = 0; word < state.words.size(); ++word) {
     while (state.words[word].deficit > 0) {
-      if (search.visits() > patience) return false;
+      if (search.visits() > most_visits) return false;
       search.serve(word);
     }
   }
   return true;
 }
 
-// Finds good prices by an auction in which every bid overpays by a step, in rounds of ever smaller
-// steps, and begins anew from them. Whatever the auction gave to whom is forgotten, so the answer
-// is as exact as before; but the searches that are left end within a few words.
+// Finds good prices by an auction with epsilon scaling, and restarts from those prices. The
+// auction's assignment is discarded, so the result stays exact; but the remaining searches end
+// within a few words.
 void auction_prices(TransportState& state) {
   double widest = 0;
   for (const TransportWord& word : state.words) {
@@ -203,11 +209,11 @@ void auction_prices(TransportState& state) {
   }
   double step = kFirstStep * widest;
   while (step > kLastStep * widest) {
-    state.take_everything_back();
+    state.release_all_units();
     bid_in_turns(state, step, kAuctionBidsPerWord);
     step /= kStepRatio;
   }
-  state.take_everything_back();
+  state.release_all_units();
   parallel_for(
       state.words.size(), [&](std::size_t k) { state.renew_value(static_cast<std::uint32_t>(k)); },
       4);
@@ -217,21 +223,22 @@ void auction_prices(TransportState& state) {
 }  // namespace
 
 std::vector<std::uint32_t> solve_transport(const TransportProblem& problem) {
-  check(problem.demand.size() == problem.costs.words, "one demand a word");
-  check(problem.is_unit_open.size() == problem.costs.units, "one mark a unit");
+  check(problem.demand.size() == problem.costs.words, "one demand per word");
+  check(problem.is_unit_open.size() == problem.costs.units, "one flag per unit");
   TransportState state(problem);
   if (has_many_ties(state)) match_ties(state);
   bid_in_turns(state, 0, kBidsPerWord);
-  // An auction would leave prices on units that end up free, where only 0 will do.
-  const std::size_t patience =
-      state.is_choice ? std::numeric_limits<std::size_t>::max() : kPatience * state.words.size();
-  if (!serve_all(state, patience)) {
+  // An auction would leave positive prices on units that end up free, whose price must be 0.
+  const std::size_t most_visits = state.has_optional_units
+                                      ? std::numeric_limits<std::size_t>::max()
+                                      : kMostVisitsPerWord * state.words.size();
+  if (!serve_all(state, most_visits)) {
     auction_prices(state);
     serve_all(state, std::numeric_limits<std::size_t>::max());
   }
   std::vector<std::uint32_t> word_of_unit(problem.costs.units, kNoWord);
   for (std::size_t unit = 0; unit < word_of_unit.size(); ++unit) {
-    if (state.owner[unit] != kNobody) word_of_unit[unit] = state.names[state.owner[unit]];
+    if (state.owner[unit] != kNoIndex) word_of_unit[unit] = state.names[state.owner[unit]];
   }
   return word_of_unit;
 }

@@ -12,13 +12,16 @@ namespace triglyph {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Candidates beyond a word's copies, so that its bids find a next best unit.
 constexpr std::size_t kSpareCandidates = 16;
-constexpr std::uint64_t kSparingly = 2;  // units a copy from which most units are left alone
+// Units per copy from which the surplus units stay free instead of carrying a dummy word, whose
+// list would hold most of them.
+constexpr std::uint64_t kMinUnitsPerCopy = 2;
 
 }  // namespace
 
 TransportState::TransportState(const TransportProblem& problem) {
-  owner.assign(problem.costs.units, kNobody);
+  owner.assign(problem.costs.units, kNoIndex);
   place.assign(problem.costs.units, 0);
   count_copies(problem);
   set_first_prices(problem);
@@ -36,12 +39,12 @@ void TransportState::renew_value(std::uint32_t word) {
   }
 }
 
-void TransportState::take_everything_back() {
+void TransportState::release_all_units() {
   for (TransportWord& word : words) {
     word.deficit += static_cast<std::uint32_t>(word.held.size());
     word.held.clear();
   }
-  std::fill(owner.begin(), owner.end(), kNobody);
+  std::fill(owner.begin(), owner.end(), kNoIndex);
 }
 
 void TransportState::count_copies(const TransportProblem& problem) {
@@ -49,7 +52,7 @@ void TransportState::count_copies(const TransportProblem& problem) {
   for (const std::uint8_t is_open : problem.is_unit_open) open += is_open != 0;
   std::uint64_t copies = 0;
   for (std::uint32_t name = 0; name < problem.costs.words; ++name) {
-    // More copies than units are never served; leaving them out keeps the counts small.
+    // More copies than units are never placed; leaving them out keeps the counts small.
     const auto wanted =
         static_cast<std::uint32_t>(std::min<std::uint64_t>(problem.demand[name], open));
     if (wanted == 0) continue;
@@ -58,11 +61,11 @@ void TransportState::count_copies(const TransportProblem& problem) {
     copies += wanted;
   }
   if (copies > open) {
-    check(copies - open < kNobody, "copies that find no unit are counted in 32 bits");
+    check(copies - open < kNoIndex, "surplus copies are counted in 32 bits");
     reserve_size = reserve_left = static_cast<std::uint32_t>(copies - open);
   }
-  is_choice = copies * kSparingly <= open;
-  if (copies < open && !is_choice) {
+  has_optional_units = copies * kMinUnitsPerCopy <= open;
+  if (copies < open && !has_optional_units) {
     zeros.assign(problem.costs.units, 0.0F);
     names.push_back(kNoWord);
     words.push_back({zeros, static_cast<std::uint32_t>(open - copies)});
@@ -72,11 +75,11 @@ void TransportState::count_copies(const TransportProblem& problem) {
   }
 }
 
-// A unit's price starts at minus its cheapest pair: a unit that is expensive for every word alike
-// then looks like any other. With units to spare only the cheapest, as many as there are copies,
-// are treated so; the unwanted word takes the rest as they are.
+// A unit's price starts at minus its cheapest cost, so that a unit that is expensive under every
+// word competes like any other. With surplus units this applies only to the cheapest, as many as
+// there are copies; the dummy word takes the others.
 void TransportState::set_first_prices(const TransportProblem& problem) {
-  if (is_choice) {
+  if (has_optional_units) {
     prices.assign(problem.costs.units, kInfinity);
     for (std::size_t unit = 0; unit < prices.size(); ++unit) {
       if (problem.is_unit_open[unit] != 0) prices[unit] = 0;
@@ -117,7 +120,7 @@ void TransportState::renew_list(std::uint32_t word) {
   TransportWord& w = words[word];
   const double old_bound = w.list.pairs.empty() ? -kInfinity : w.list.bound;
   w.list = pick_candidates(w.column, prices, {w.width, mix_bits(word)});
-  // Many equally good units: look at more of them the next time.
+  // Many units tie: list more of them the next time.
   if (w.list.bound <= old_bound) w.width *= 2;
 }
 
@@ -129,7 +132,7 @@ void TransportState::renew_short_list(std::uint32_t word) {
 
 void TransportState::give(std::uint32_t unit, std::uint32_t word) {
   const std::uint32_t before = owner[unit];
-  if (before != kNobody) {
+  if (before != kNoIndex) {
     std::vector<std::uint32_t>& held = words[before].held;
     held[place[unit]] = held.back();
     place[held.back()] = place[unit];
