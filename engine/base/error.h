@@ -1,5 +1,5 @@
-// The one exception of the engine: bad input or a bad environment, said in one line that names
-// the file, the place in it and the value seen. A broken promise inside the program is check().
+// The engine's only exception, for bad input or a bad environment: one line that names the file,
+// the place in it and the value seen. A broken invariant of the program itself is check().
 #pragma once
 
 #include <filesystem>
@@ -10,20 +10,20 @@
 namespace triglyph {
 
 enum class ErrorCode {
-  Unreadable,   // the file is not there, is no regular file, or may not be read
+  Unreadable,   // the file does not exist, is no regular file, or may not be read
   Malformed,    // the file breaks the rules of its format
   Unsupported,  // a format or a variant that is not handled
   Unwritable,   // the output cannot be created, filled or renamed
   Usage,        // options that contradict each other or the input
 };
 
-// Stable, lower-case name for records ("malformed").
+// Returns the stable, lower-case name that records use ("malformed").
 [[nodiscard]] std::string_view name_of(ErrorCode code);
 
 class Error : public std::runtime_error {
  public:
-  // `place` is "line 12" or "byte 84"; empty where the whole file is meant. The text of what() is
-  // "path: place: message", without the parts that are empty.
+  // `place` is "line 12" or "byte 84", or empty for the whole file. what() returns
+  // "path: place: message" without the parts that are empty.
   Error(ErrorCode code, const std::filesystem::path& path, std::string place, std::string message);
 
   [[nodiscard]] ErrorCode code() const noexcept { return code_; }
@@ -38,14 +38,15 @@ class Error : public std::runtime_error {
   std::string message_;
 };
 
-// "line 12" and "byte 84", the two places an Error names.
+// Return "line 12" and "byte 84", the forms of Error::place().
 [[nodiscard]] std::string at_line(std::size_t line);
 [[nodiscard]] std::string at_byte(std::size_t offset);
 
-// Returns what the system says of an errno. Unlike strerror() it may be called from any thread.
+// Returns the system's message for an errno. Thread-safe, unlike strerror().
 [[nodiscard]] std::string system_reason(int number);
 
-// Ends in std::logic_error naming the caller's file and line if the promise is broken; always on.
+// Throws std::logic_error naming the caller's file and line unless `promise` holds. Active in every
+// build.
 void check(bool promise, const char* text, const char* file = __builtin_FILE(),
            int line = __builtin_LINE());
 

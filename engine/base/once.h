@@ -1,4 +1,4 @@
-// A value worked out when it is first asked for.
+// Lazy, thread-safe computation of a value.
 #pragma once
 
 #include <mutex>
@@ -6,11 +6,13 @@
 
 namespace triglyph {
 
-// Safe to ask from many threads; the first one makes the value, the others wait for it.
+// A value that is computed on first use. Safe to use from many threads: the first one computes, the
+// others wait.
 template <typename T>
 class Once {
  public:
-  // `make` returns a T. If it throws, the next caller tries again.
+  // Returns the value, computed by `make` if this is the first call. If `make` throws, the next
+  // call tries again.
   template <typename Make>
   [[nodiscard]] const T& get(const Make& make) const {
     std::call_once(made_, [&] { value_.emplace(make()); });

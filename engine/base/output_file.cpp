@@ -14,7 +14,7 @@
 namespace triglyph {
 namespace {
 
-// Unique among the processes and threads that may write into one directory.
+// Returns a name that is unique among processes and threads that write into one directory.
 std::filesystem::path temporary_name(const std::filesystem::path& path) {
   static std::atomic<unsigned> counter{0};
   std::filesystem::path name = ".";

@@ -1,5 +1,5 @@
-// A file that appears whole or not at all: written under a temporary name in the same directory and
-// renamed when it is done.
+// Atomic file output: the bytes are written under a temporary name in the same directory, and the
+// file is renamed when it is complete.
 #pragma once
 
 #include <filesystem>
@@ -9,8 +9,8 @@ namespace triglyph {
 
 class OutputFile {
  public:
-  // Creates missing directories and the temporary file ".<stem>.<unique>.part<extension>".
-  // Throws Error Unwritable.
+  // Creates missing directories and the temporary file ".<stem>.<unique>.part<extension>", which
+  // keeps the extension so that readers recognise the format. Throws Error Unwritable.
   explicit OutputFile(const std::filesystem::path& path);
 
   // Removes the temporary file unless it was committed.
@@ -18,13 +18,14 @@ class OutputFile {
   OutputFile(OutputFile&& other) noexcept;
   OutputFile& operator=(OutputFile&&) = delete;
 
-  // Appends. Throws Error Unwritable, also on a full disk.
+  // Appends the bytes. Throws Error Unwritable, also if the disk is full.
   void write(std::span<const char> bytes);
 
-  // Where the bytes are until commit(); readable once they are written.
+  // Returns the path that holds the bytes until commit(). What was written can be read there.
   [[nodiscard]] const std::filesystem::path& temporary_path() const { return temporary_; }
 
-  // Flushes to the disk and renames over whatever stands at `path`. Throws Error Unwritable.
+  // Flushes to disk and renames to the final path, replacing an existing file. Throws Error
+  // Unwritable.
   void commit();
 
  private:

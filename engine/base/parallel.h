@@ -1,6 +1,6 @@
-// The only user of oneTBB in the engine. Every loop is isolated, so a thread that waits here never
-// starts another mesh; every result is bitwise the same for any number of threads, because each
-// index writes its own slot and folds run over fixed blocks in index order.
+// Parallel loops, the engine's only use of oneTBB. Every loop is isolated, so that a thread that
+// waits in it never starts another mesh. Results are bitwise equal for any number of threads: each
+// index writes its own slot, and folds run over fixed blocks in index order.
 #pragma once
 
 #include <algorithm>
@@ -18,11 +18,13 @@
 
 namespace triglyph {
 
-// Work is cut into fixed blocks, so the shape of a fold depends on the input size alone.
+// Indices per block. Fixed, so that the order of a fold depends on the input size alone; large
+// enough that scheduling a block costs little beside its work.
 inline constexpr std::size_t kBlock = 4096;
 
-// Calls body(i) once for every i in [0, n), in parallel. The body must not throw across meshes:
-// an exception cancels this loop and is rethrown here.
+// Calls body(i) once for every i in [0, n), in parallel, in tasks of about `grain` consecutive
+// indices or more. An exception cancels the loop and is rethrown here, so a loop over meshes must
+// catch inside its body.
 template <typename Body>
 void parallel_for(std::size_t n, const Body& body, std::size_t grain = 1) {
   if (n <= grain) {
@@ -37,14 +39,15 @@ void parallel_for(std::size_t n, const Body& body, std::size_t grain = 1) {
   });
 }
 
-// Calls body(begin, end) for consecutive blocks that cover [0, n).
+// Calls body(begin, end) for consecutive blocks that cover [0, n), in parallel.
 template <typename Body>
 void parallel_blocks(std::size_t n, const Body& body, std::size_t block = kBlock) {
   const std::size_t blocks = (n + block - 1) / block;
   parallel_for(blocks, [&](std::size_t b) { body(b * block, std::min(n, b * block + block)); });
 }
 
-// Folds map(0) .. map(n - 1) with join, in index order inside blocks and across them.
+// Returns the fold of map(0) .. map(n - 1) under join, in index order within blocks and across
+// them.
 template <typename T, typename Map, typename Join>
 [[nodiscard]] T parallel_reduce(std::size_t n, T identity, const Map& map, const Join& join) {
   std::vector<T> partial((n + kBlock - 1) / kBlock, identity);
@@ -58,7 +61,7 @@ template <typename T, typename Map, typename Join>
   return total;
 }
 
-// Collects what make(i, out) appends for i in [0, n), in index order.
+// Returns everything that make(i, out) appends to `out` for i in [0, n), in index order.
 template <typename T, typename Make>
 [[nodiscard]] std::vector<T> parallel_collect(std::size_t n, const Make& make) {
   std::vector<std::vector<T>> parts((n + kBlock - 1) / kBlock);
@@ -73,27 +76,28 @@ template <typename T, typename Make>
   return all;
 }
 
-// Sorts by a total order: equal elements must be indistinguishable, or the result would depend on
-// the number of threads.
+// Sorts in parallel. `less` must be a total order: if elements that compare equal could be told
+// apart, the result would depend on the number of threads.
 template <typename Iterator, typename Less>
 void parallel_sort(Iterator begin, Iterator end, const Less& less) {
   tbb::this_task_arena::isolate([&] { tbb::parallel_sort(begin, end, less); });
 }
 
-// Runs two independent pieces of work, on two threads where there are two.
+// Runs two independent functions, in parallel if two threads are free.
 template <typename First, typename Second>
 void parallel_pair(const First& first, const Second& second) {
   tbb::this_task_arena::isolate([&] { tbb::parallel_invoke(first, second); });
 }
 
-// Runs work that is parallel inside (a library's), without picking up other meshes while it waits.
+// Runs a function that uses oneTBB itself, such as a library call, without starting other meshes
+// while it waits.
 template <typename Work>
 void run_isolated(const Work& work) {
   tbb::this_task_arena::isolate(work);
 }
 
-// Runs `work` in an arena of so many threads, which no other thread of the process exceeds
-// meanwhile; 0: as many as the machine has.
+// Runs `work` in an arena of `threads` threads, and limits oneTBB to that number in the whole
+// process meanwhile. 0: as many as the machine has.
 template <typename Work>
 void with_threads(int threads, const Work& work) {
   const int count =

@@ -1,4 +1,4 @@
-// Lists of point numbers, one list a unit, in compressed rows.
+// Lists of point indices, one list per unit, in compressed rows (CSR).
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
-// Random numbers as a function of (seed, stream, index): no generator carries state, so a result
-// never depends on the order in which it is computed. Not for secrets; keys have their own stream.
+// Random numbers as pure functions of (seed, stream, index). Without a generator's state, a result
+// never depends on the order of computation. Not cryptographically secure: secrets come from
+// Key::stream().
 #pragma once
 
 #include <cstdint>
@@ -14,12 +15,13 @@ namespace triglyph {
   return x ^ (x >> 31);
 }
 
+// Returns 64 random bits.
 [[nodiscard]] constexpr std::uint64_t random_bits(std::uint64_t seed, std::uint64_t stream,
                                                   std::uint64_t index) noexcept {
   return mix_bits(mix_bits(mix_bits(seed) ^ stream) ^ index);
 }
 
-// Uniform in [0, 1), 53 bits.
+// Returns a number uniform in [0, 1), with 53 random bits.
 [[nodiscard]] constexpr double random_unit(std::uint64_t seed, std::uint64_t stream,
                                            std::uint64_t index) noexcept {
   return static_cast<double>(random_bits(seed, stream, index) >> 11) * 0x1.0p-53;
