@@ -1,4 +1,4 @@
-// Boxes with sides along the axes.
+// Axis-aligned bounding boxes.
 #pragma once
 
 #include <limits>
@@ -8,7 +8,7 @@
 
 namespace triglyph {
 
-// Empty until it is extended: low above high.
+// An axis-aligned box. Empty by default: `low` is above `high` until a point is added.
 struct Box {
   Vec3 low{kFar, kFar, kFar};
   Vec3 high{-kFar, -kFar, -kFar};
@@ -34,7 +34,7 @@ struct Box {
   return box;
 }
 
-// Returns the length of the bounding box's diagonal in model units; 0 without points.
+// Returns the length of the bounding box's diagonal in model units; 0 without points. O(points).
 [[nodiscard]] inline double box_diagonal(std::span<const Vec3> points) {
   return points.empty() ? 0 : bounding_box(points).size().norm();
 }

@@ -1,12 +1,12 @@
-// Embree's device, of which a process needs one.
+// The process-wide Embree device.
 #pragma once
 
 #include <embree3/rtcore.h>
 
 namespace triglyph {
 
-// note: never made with rtcNewDevice("threads=..."), which would throttle TBB for every other mesh.
-// Throws std::logic_error if Embree offers none.
+// Returns the device, created on first use. Throws std::logic_error if Embree cannot create one.
+// note: created without "threads=...", which would limit TBB for all other meshes of the process.
 [[nodiscard]] RTCDevice embree_device();
 
 }  // namespace triglyph

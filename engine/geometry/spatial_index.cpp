@@ -13,8 +13,8 @@
 namespace triglyph {
 namespace {
 
-// Coordinates handed to Embree lie in [-1, 1]; rounding them to float moves a corner by less than
-// 2^-24 an axis, Embree's own arithmetic adds a few times that.
+// Padding of radii in Embree's units. Coordinates passed to Embree lie in [-1, 1]; rounding to
+// float moves a corner by less than 2^-24 per axis, and Embree's arithmetic adds a few times that.
 constexpr double kFloatPad = 4e-7;
 
 float float_above(double value) {
@@ -27,7 +27,7 @@ struct SpatialIndex::Scene {
   std::span<const Vec3> positions;
   std::span<const Triangle> triangles;
   Vec3 centre{0, 0, 0};
-  double scale = 1;  // Embree units a model unit
+  double scale = 1;  // Embree units per model unit
   RTCScene handle = nullptr;
 
   ~Scene() {
@@ -80,18 +80,18 @@ struct SpatialIndex::Scene {
       query.found.push_back(arguments->primID);
     }
     if (query.found.size() <= query.most) return false;
-    arguments->query->radius = 0;  // enough: look no further
+    arguments->query->radius = 0;  // ends the query
     return true;
   }
 
-  // The query in Embree's units; what rounding could lose is added to the radius.
+  // Returns the query in Embree's units, with the radius padded against rounding.
   [[nodiscard]] RTCPointQuery point_query(const Vec3& point, double reach) const {
     const Vec3 local = (point - centre) * scale;
     RTCPointQuery query{};
     query.x = static_cast<float>(local[0]);
     query.y = static_cast<float>(local[1]);
     query.z = static_cast<float>(local[2]);
-    // the query's own rounding grows with its distance from the box
+    // the rounding of the query point grows with its distance from the box
     const double pad = kFloatPad * std::max(1.0, local.max_abs());
     query.radius = std::isfinite(reach) ? float_above(reach * scale * (1 + 1e-6) + pad)
                                         : std::numeric_limits<float>::infinity();
@@ -100,7 +100,7 @@ struct SpatialIndex::Scene {
 
   void attach_triangles() {
     RTCGeometry geometry = rtcNewGeometry(embree_device(), RTC_GEOMETRY_TYPE_TRIANGLE);
-    // each triangle with corners of its own: a few triangles of a large mesh stay a few
+    // every triangle has its own corners, so an index of few triangles of a large mesh stays small
     auto* points = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
                                                                RTC_FORMAT_FLOAT3, 3 * sizeof(float),
                                                                3 * triangles.size()));
@@ -203,7 +203,7 @@ Vec3 closest_on_triangle(const Vec3& query, const Vec3& a, const Vec3& b, const 
     return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
   }
   const double total = va + vb + vc;
-  if (!(total > 0)) return a;  // a degenerate triangle that escaped the edge cases
+  if (!(total > 0)) return a;  // a degenerate triangle that the edge cases missed
   return a + ab * (vb / total) + ac * (vc / total);
 }
 

@@ -1,7 +1,7 @@
-// Closest points on a set of triangles. Embree finds the candidates in single precision, relative
-// to the box's centre and with padded radii; distances are computed and compared in double, and of
-// equal ones the lowest triangle wins, so an answer depends neither on threads nor on the
-// instruction set.
+// Closest-point queries on a set of triangles. Embree finds candidates in single precision,
+// relative to the centre of the bounding box and with padded radii. Distances are computed and
+// compared in double precision and ties go to the triangle of lowest index, so results depend
+// neither on the number of threads nor on the instruction set.
 #pragma once
 
 #include <cstdint>
@@ -19,35 +19,38 @@ inline constexpr std::uint32_t kNoTriangle = 0xffffffff;
 
 struct ClosestPoint {
   double distance = 0;                   // model units
-  std::uint32_t triangle = kNoTriangle;  // index in the span given; kNoTriangle: none in reach
+  std::uint32_t triangle = kNoTriangle;  // index of the triangle; kNoTriangle: none within reach
   Vec3 point{0, 0, 0};
 };
 
 struct Plane {
   Vec3 point{0, 0, 0};
-  Vec3 normal{0, 0, 0};  // of any length; zero where the plane is undefined
+  Vec3 normal{0, 0, 0};  // any length; zero if the plane is undefined
 };
 
 class SpatialIndex {
  public:
-  // Keeps views of both; they must outlive the index. O(t log t), parallel.
+  // Builds the index over `triangles`, whose corners index `positions`. Both must outlive the
+  // index. O(t log t), parallel.
   SpatialIndex(std::span<const Vec3> positions, std::span<const Triangle> triangles);
   ~SpatialIndex();
   SpatialIndex(SpatialIndex&&) noexcept;
 
-  // The nearest point on any triangle within `reach` of `query` (inclusive; infinity: anywhere).
-  // Safe to call from many threads. O(log t) typically.
+  // Returns the point of the triangles that is closest to `query`, if one lies within `reach`
+  // (model units, inclusive; may be infinite). Safe to call from many threads. O(log t) on average.
   [[nodiscard]] ClosestPoint closest(const Vec3& query, double reach) const;
 
-  // Of one of the triangles from `query`. O(1).
+  // Returns the distance from `query` to a triangle, in model units.
   [[nodiscard]] double distance_to(const Vec3& query, std::uint32_t triangle) const;
 
-  // The side plane over edge 0, 1 or 2 of the prism of points whose foot on the triangle's plane
-  // lies inside the triangle. The normal, of unit length, points outwards.
+  // Returns a side plane, through edge 0, 1 or 2, of the triangle's prism: the points whose
+  // perpendicular foot on the triangle's plane lies inside the triangle. The unit normal points out
+  // of the prism.
   [[nodiscard]] Plane prism_side(std::uint32_t triangle, std::size_t edge) const;
 
-  // All triangles that come as near as `radius` (inclusive, finite) to `centre`, ascending; nothing
-  // if there are more than `most`. Safe to call from many threads. O(log t + triangles found).
+  // Returns the triangles within `radius` (model units, inclusive, finite) of `centre`, ascending,
+  // or nothing if there are more than `most`. Safe to call from many threads. O(log t + triangles
+  // found).
   [[nodiscard]] std::optional<std::vector<std::uint32_t>> triangles_in_ball(const Vec3& centre,
                                                                             double radius,
                                                                             std::size_t most) const;
@@ -57,7 +60,7 @@ class SpatialIndex {
   std::unique_ptr<Scene> scene_;
 };
 
-// Nearest point of one triangle, degenerate ones included.
+// Returns the point of triangle a, b, c that is closest to `query`. The triangle may be degenerate.
 // Ericson, Real-Time Collision Detection (2005), section 5.1.5.
 [[nodiscard]] Vec3 closest_on_triangle(const Vec3& query, const Vec3& a, const Vec3& b,
                                        const Vec3& c);

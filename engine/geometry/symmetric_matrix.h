@@ -1,4 +1,5 @@
-// Symmetric 3 x 3 matrices as sums of outer products: covariances, curvature tensors.
+// Symmetric 3 x 3 matrices built as sums of outer products, such as covariance matrices and
+// curvature tensors.
 #pragma once
 
 #include <array>
@@ -10,7 +11,7 @@ namespace triglyph {
 
 struct PrincipalAxes {
   std::array<double, 3> values{};  // eigenvalues, descending
-  std::array<Vec3, 3> axes;        // their eigenvectors, of length 1
+  std::array<Vec3, 3> axes;        // unit eigenvectors in the same order
 };
 
 class SymmetricMatrix {
@@ -22,6 +23,7 @@ class SymmetricMatrix {
     }
   }
 
+  // Returns the eigenvalues and eigenvectors. An eigenvector's sign is arbitrary but deterministic.
   [[nodiscard]] PrincipalAxes principal_axes() const;
 
  private:

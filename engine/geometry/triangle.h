@@ -1,4 +1,4 @@
-// Triangles as three point numbers, and the normals and areas of their corners.
+// Triangles as triples of point indices, with their normals and areas.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@ namespace triglyph {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-// Returns the normal of triangle a, b, c, counter-clockwise seen from its tip; its length is twice
-// the triangle's area, 0 for a degenerate one.
+// Returns the normal of triangle a, b, c by the right-hand rule. Its length is twice the triangle's
+// area, 0 if the triangle is degenerate.
 [[nodiscard]] constexpr Vec3 area_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
   return cross(b - a, c - a);
 }

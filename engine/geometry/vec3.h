@@ -34,7 +34,7 @@ struct Vec3 {
     return *this;
   }
 
-  // Takes the lesser, or the greater, coordinate along every axis.
+  // Replace each coordinate by the lesser, or by the greater, of the two.
   constexpr Vec3& minimize(const Vec3& other) {
     for (std::size_t i = 0; i < 3; ++i) values[i] = std::min(values[i], other.values[i]);
     return *this;
@@ -48,11 +48,12 @@ struct Vec3 {
   [[nodiscard]] double max_abs() const {
     return std::max({std::abs(values[0]), std::abs(values[1]), std::abs(values[2])});
   }
+  // Returns the squared length.
   [[nodiscard]] constexpr double sqrnorm() const {
     return values[0] * values[0] + values[1] * values[1] + values[2] * values[2];
   }
   [[nodiscard]] double norm() const { return std::sqrt(sqrnorm()); }
-  // Not a number for the zero vector.
+  // Returns the unit vector of this direction; NaN for the zero vector.
   [[nodiscard]] Vec3 normalized() const;
 
   constexpr bool operator==(const Vec3&) const = default;
