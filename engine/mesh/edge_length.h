@@ -1,12 +1,12 @@
-// The length by which local sizes are measured.
+// The mean edge length, to which the schemes relate local sizes.
 #pragma once
 
 #include "engine/mesh/mesh.h"
 
 namespace triglyph {
 
-// Mean length of the triangles' sides, an inner edge counting twice; 0 without any. Model units.
-// O(triangles), parallel.
+// Returns the mean length of the triangles' sides in model units; an edge of two triangles counts
+// twice. 0 without triangles. O(triangles), parallel.
 [[nodiscard]] double mean_edge_length(const Mesh& mesh);
 
 }  // namespace triglyph

@@ -11,7 +11,7 @@ using OpenMesh::FaceHandle;
 using OpenMesh::HalfedgeHandle;
 using OpenMesh::VertexHandle;
 
-// Corner 3t + i is the i-th corner of triangle t and the directed edge that leaves it.
+// Index 3t + i of the i-th corner of triangle t, and of the directed edge that starts there.
 using Corner = std::uint32_t;
 constexpr Corner kNone = 0xffffffff;
 
@@ -33,7 +33,7 @@ struct Corners {
   [[nodiscard]] Corner count() const { return static_cast<Corner>(opposite.size()); }
 };
 
-// A directed edge seen from its lower point.
+// A directed edge, listed at its lower point.
 struct Spoke {
   std::uint32_t other;
   Corner corner;
@@ -43,7 +43,8 @@ struct Spoke {
   }
 };
 
-// Pairs the directed edges around one lower point: exactly two, running in opposite directions.
+// Pairs the directed edges at one lower point: those of an edge with exactly two, in opposite
+// directions.
 void match_spokes(Corners& corners, Spoke* begin, Spoke* end) {
   std::sort(begin, end);
   for (Spoke* first = begin; first != end;) {
@@ -76,7 +77,7 @@ void match_opposites(Corners& corners) {
       kBlock);
 }
 
-// Gives every corner the kernel vertex of its fan.
+// Assigns every corner the kernel vertex of its fan.
 std::vector<std::uint32_t> split_fans(const Corners& corners, std::vector<std::uint32_t>& copies) {
   const auto points = static_cast<std::uint32_t>(corners.mesh.positions.size());
   std::vector<std::uint32_t> vertex(corners.count(), kNone);
@@ -91,7 +92,7 @@ std::vector<std::uint32_t> split_fans(const Corners& corners, std::vector<std::u
     }
     used[point] = 1;
     vertex[seed] = id;
-    // note: a fan is a cycle or a path; the second sweep is empty in a cycle
+    // a fan is a cycle or a path; this second sweep does nothing in a cycle
     for (Corner c = corners.opposite[previous(seed)]; c != kNone && vertex[c] == kNone;
          c = corners.opposite[previous(c)]) {
       vertex[c] = id;
@@ -122,8 +123,8 @@ HalfedgeHandle handle(std::uint32_t halfedge) {
   return HalfedgeHandle(static_cast<int>(halfedge));
 }
 
-// Links the halfedges outside the surface. The one that ends where corner c's edge starts is found
-// by turning around that vertex inside its fan.
+// Links the boundary halfedges. The one that ends where the edge of corner c starts is found by
+// turning around that vertex within its fan.
 void link_boundary(const Corners& corners, const std::vector<std::uint32_t>& halfedge,
                    OpenMesh::TriConnectivity& kernel) {
   for (Corner c = 0; c < corners.count(); ++c) {
@@ -132,7 +133,8 @@ void link_boundary(const Corners& corners, const std::vector<std::uint32_t>& hal
     while (corners.opposite[turn] != kNone) turn = previous(corners.opposite[turn]);
     const HalfedgeHandle outside = handle(halfedge[c] ^ 1);
     kernel.set_next_halfedge_handle(outside, handle(halfedge[turn] ^ 1));
-    // a vertex on the boundary leaves by its boundary halfedge, as OpenMesh's circulators expect
+    // the outgoing halfedge of a boundary vertex is its boundary halfedge, as OpenMesh's
+    // circulators expect
     kernel.set_halfedge_handle(kernel.to_vertex_handle(handle(halfedge[c])), outside);
   }
 }

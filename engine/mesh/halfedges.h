@@ -1,6 +1,7 @@
-// Connectivity of a mesh: halfedges over an OpenMesh kernel, which no other header names. Built in
-// bulk from the triangles instead of face by face, so that no face is refused: where the surface is
-// not manifold the kernel is cut open, and the points stay as they are.
+// Connectivity of a mesh as halfedges. The only header that names OpenMesh, whose kernel it wraps.
+// The kernel is built in bulk from the triangles instead of face by face, so that no face is
+// refused: the connectivity is cut open where the surface is not manifold, and the points stay as
+// they are.
 #pragma once
 
 #include <cstddef>
@@ -20,10 +21,10 @@ enum class Halfedge : std::int32_t {};
 inline constexpr Halfedge kNoHalfedge{-1};
 
 // Face f is triangle f of the mesh, and its first halfedge runs from the triangle's first corner to
-// its second. An edge with other than two faces, or with two faces that run along it in the same
-// direction, is a boundary edge of each. A point at which several fans of triangles touch has one
-// vertex a fan: vertices 0 .. points - 1 are the points themselves (their first fan), the copies
-// follow. All members take O(1).
+// its second. An edge becomes a boundary edge of each of its faces if it has other than two of
+// them, or two that traverse it in the same direction. A point where several fans of triangles meet
+// gets one vertex per fan: vertices 0 .. points - 1 are the points themselves, with their first
+// fan; the copies for further fans follow. All member functions take O(1).
 class Halfedges {
  public:
   [[nodiscard]] std::uint32_t face_count() const {
@@ -32,21 +33,23 @@ class Halfedges {
   [[nodiscard]] std::uint32_t edge_count() const {
     return static_cast<std::uint32_t>(kernel_.n_edges());
   }
-  // Points and the copies of points at which several fans touch.
+  // Returns the number of points and of their copies.
   [[nodiscard]] std::uint32_t vertex_count() const {
     return static_cast<std::uint32_t>(kernel_.n_vertices());
   }
-  // The point of each vertex that is a copy, by ascending vertex.
+  // Returns the point of every copy, by ascending vertex.
   [[nodiscard]] std::span<const std::uint32_t> copied_points() const { return copied_points_; }
 
   [[nodiscard]] Halfedge first_of_face(std::uint32_t face) const {
     return wrap(kernel_.halfedge_handle(OpenMesh::FaceHandle(static_cast<int>(face))));
   }
-  // `side` 0 or 1. Of an interior edge both have a face, of a boundary edge the first.
+  // Returns one of the two halfedges, `side` 0 or 1, of an edge. Side 0 always has a face, side 1
+  // only if the edge is interior.
   [[nodiscard]] Halfedge of_edge(std::uint32_t edge, std::uint32_t side) const {
     return static_cast<Halfedge>(2 * edge + side);
   }
-  // One that leaves the vertex, its boundary halfedge if it has one; kNoHalfedge: no face uses it.
+  // Returns a halfedge that leaves the vertex: its boundary halfedge if there is one, kNoHalfedge
+  // if no face uses the vertex.
   [[nodiscard]] Halfedge outgoing(std::uint32_t vertex) const {
     return wrap(kernel_.halfedge_handle(OpenMesh::VertexHandle(static_cast<int>(vertex))));
   }
@@ -60,14 +63,14 @@ class Halfedges {
   [[nodiscard]] Halfedge opposite(Halfedge halfedge) const {
     return static_cast<Halfedge>(static_cast<std::int32_t>(halfedge) ^ 1);
   }
-  // The next halfedge that leaves the same vertex, counter-clockwise.
+  // Returns the next halfedge, counter-clockwise, that leaves the same vertex.
   [[nodiscard]] Halfedge turned(Halfedge halfedge) const { return opposite(previous(halfedge)); }
 
-  // Does it lie outside the surface, with no face?
+  // Returns whether the halfedge has no face.
   [[nodiscard]] bool is_boundary(Halfedge halfedge) const {
     return kernel_.is_boundary(handle(halfedge));
   }
-  // The face to its left. Precondition: not at the boundary.
+  // Returns the face to the left. Precondition: not a boundary halfedge.
   [[nodiscard]] std::uint32_t face(Halfedge halfedge) const {
     return static_cast<std::uint32_t>(kernel_.face_handle(handle(halfedge)).idx());
   }
@@ -75,11 +78,11 @@ class Halfedges {
     return static_cast<std::uint32_t>(halfedge) / 2;
   }
 
-  // The points it runs between.
+  // Return the points where the halfedge starts and ends.
   [[nodiscard]] std::uint32_t from(Halfedge halfedge) const { return to(opposite(halfedge)); }
   [[nodiscard]] std::uint32_t to(Halfedge halfedge) const { return point(to_vertex(halfedge)); }
 
-  // The vertex it runs to: its point, or a copy of it.
+  // Returns the vertex where the halfedge ends: a point, or a copy of one.
   [[nodiscard]] std::uint32_t to_vertex(Halfedge halfedge) const {
     return static_cast<std::uint32_t>(kernel_.to_vertex_handle(handle(halfedge)).idx());
   }
@@ -102,7 +105,8 @@ class Halfedges {
   std::vector<std::uint32_t> copied_points_;
 };
 
-// O(triangles) for bounded vertex degrees, O(t log t) at worst.
+// Returns the connectivity of the mesh. O(triangles) for bounded vertex degrees, O(t log t) at
+// worst.
 [[nodiscard]] Halfedges build_halfedges(const Mesh& mesh);
 
 }  // namespace triglyph

@@ -1,4 +1,4 @@
-// A mesh as the schemes see it: distinct points and triangles over them.
+// The triangle mesh that schemes and metrics work on.
 #pragma once
 
 #include <vector>
@@ -9,8 +9,8 @@
 namespace triglyph {
 
 struct Mesh {
-  std::vector<Vec3> positions;      // distinct points, model units; equal file coordinates are one
-  std::vector<Triangle> triangles;  // counter-clockwise seen from outside; three distinct points
+  std::vector<Vec3> positions;      // model units; vertices at equal coordinates are one point
+  std::vector<Triangle> triangles;  // three distinct points, counter-clockwise seen from outside
 };
 
 }  // namespace triglyph

@@ -1,4 +1,4 @@
-// The triangles at each point.
+// The faces at each point, in compressed rows.
 #pragma once
 
 #include <cstdint>
@@ -13,13 +13,13 @@ struct PointFaces {
   std::vector<std::uint32_t> offsets;
   std::vector<std::uint32_t> faces;
 
-  // Ascending.
+  // Returns the faces that have the point as a corner, ascending.
   [[nodiscard]] std::span<const std::uint32_t> at(std::uint32_t point) const {
     return {faces.data() + offsets[point], faces.data() + offsets[point + 1]};
   }
 };
 
-// O(points + triangles).
+// Returns the faces of all points. O(points + triangles).
 [[nodiscard]] PointFaces point_faces(const Mesh& mesh);
 
 }  // namespace triglyph

@@ -1,4 +1,4 @@
-// A mesh together with its connectivity: what schemes and metrics work on.
+// A mesh together with its connectivity, the input of schemes.
 #pragma once
 
 #include "engine/mesh/halfedges.h"
@@ -6,7 +6,7 @@
 
 namespace triglyph {
 
-// Views; both must outlive the surface.
+// Holds references; mesh and halfedges must outlive the surface.
 struct Surface {
   const Mesh& mesh;
   const Halfedges& halfedges;

@@ -20,8 +20,8 @@ void append(std::vector<Triangle>& out, std::uint32_t a, std::uint32_t b, std::u
   if (a != b && b != c && c != a) out.push_back({a, b, c});
 }
 
-// Where the lexicographically least rotation of the polygon starts, by positions. O(n), also for
-// polygons that repeat a point.
+// Returns the start of the lexicographically least rotation of the polygon, by positions. O(n),
+// also for polygons that repeat a point.
 std::size_t least_rotation(std::span<const std::uint32_t> polygon, std::span<const Vec3> points) {
   const std::size_t n = polygon.size();
   std::size_t i = 0, j = 1, k = 0;
@@ -71,7 +71,8 @@ class Cutter {
   }
 
   void cut_polygon(std::span<const std::uint32_t> polygon, std::vector<Triangle>& out) {
-    // Sums run from a canonical start, so they round the same way for every starting corner.
+    // Sums start at a canonical corner, so their rounding does not depend on the corner the face
+    // starts at.
     const std::size_t n = polygon.size(), start = least_rotation(polygon, points_);
     ring_.assign(polygon.begin(), polygon.end());
     std::rotate(ring_.begin(), ring_.begin() + static_cast<std::ptrdiff_t>(start), ring_.end());

@@ -1,4 +1,4 @@
-// Polygons cut into triangles.
+// Triangulation of polygonal faces.
 #pragma once
 
 #include <cstdint>
@@ -9,19 +9,20 @@
 
 namespace triglyph {
 
-// Polygons: face f has the corners [ends[f - 1], ends[f]) of file vertices.
+// Polygons over file vertices: face f has the corners corners[ends[f - 1]] .. corners[ends[f] - 1].
 struct Faces {
   std::vector<std::uint32_t> corners;
   std::vector<std::uint32_t> ends;
 };
 
-// Cuts every face into triangles that do not depend on the corner the face starts at, nor on
-// place, size and orientation of the model: a quadrangle along its shorter diagonal, a larger
-// polygon into a fan around the corner nearest to the mean of its corners (which has the least sum
-// of squared distances to the others). Ties go to the lexicographically smallest position, and
-// those do turn with the model. Triangles keep the order and the sense of their faces; one that
-// repeats a point is left out, and faces of less than three corners give none.
-// note: concave polygons may be cut outside their outline. O(corners).
+// Returns the triangles of all faces, in the order and with the orientation of the faces. A
+// quadrangle is cut along its shorter diagonal, a larger polygon into a fan around the corner
+// nearest to the mean of its corners (the one with the least sum of squared distances to the
+// others). The result therefore depends neither on the corner a face starts at nor on translation,
+// rotation and scale, except in ties, which go to the lexicographically smallest position.
+// Triangles that repeat a point are left out; faces of fewer than three corners give none.
+// O(corners).
+// note: a concave polygon may be cut outside its outline.
 [[nodiscard]] std::vector<Triangle> triangulate(const Faces& faces,
                                                 std::span<const std::uint32_t> point_of_vertex,
                                                 std::span<const Vec3> points);

@@ -12,9 +12,10 @@ namespace triglyph {
 namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-constexpr std::size_t kSmall = 1 << 16;  // below it one table fits the cache and threads cost more
-constexpr std::size_t kParts = 256;      // of the hash space; each is welded by one thread
-constexpr std::size_t kSlice = 1 << 16;  // vertices counted and scattered by one thread
+// Vertices below which one table fits the cache, and threads would cost more than they save.
+constexpr std::size_t kSmall = 1 << 16;
+constexpr std::size_t kParts = 256;      // of the hash space; enough to balance the threads
+constexpr std::size_t kSlice = 1 << 16;  // vertices that one task counts and scatters
 
 std::uint64_t bits_of(double coordinate) {
   return std::bit_cast<std::uint64_t>(coordinate + 0.0);  // -0 + 0 = 0
@@ -32,13 +33,13 @@ bool are_equal(const Vec3& a, const Vec3& b) {
   return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
 
-// Open addressing over vertex numbers; the first of equal vertices stays.
+// A hash table of vertex indices with open addressing; it keeps the first of equal vertices.
 class FirstTable {
  public:
   FirstTable(std::span<const Vec3> vertices, std::size_t entries)
       : vertices_(vertices), slots_(std::bit_ceil(std::max<std::size_t>(2 * entries, 16)), kNone) {}
 
-  // The first vertex that was added with the coordinates of vertex i: maybe i itself.
+  // Returns the first vertex added with the coordinates of vertex i, which may be i itself.
   std::uint32_t add(std::uint32_t i, std::uint64_t hash) {
     const std::size_t mask = slots_.size() - 1;
     for (std::size_t slot = hash & mask;; slot = (slot + 1) & mask) {
@@ -56,8 +57,9 @@ std::size_t part_of(std::uint64_t hash) {
   return hash >> 56;
 }
 
-// first[i] for every vertex, by stable partition: the vertices of one part stay in file order, so
-// the first of equal ones is found whatever thread welds the part.
+// Returns, for every vertex, the first vertex with equal coordinates. A stable partition keeps the
+// vertices of a part in file order, so the result does not depend on the thread that welds the
+// part.
 std::vector<std::uint32_t> find_first(std::span<const Vec3> vertices) {
   const std::size_t n = vertices.size();
   const std::size_t slices = (n + kSlice - 1) / kSlice;
@@ -107,7 +109,7 @@ Weld weld(std::span<const Vec3> vertices) {
   Weld result;
   result.point_of_vertex = n < kSmall ? find_first_serially(vertices) : find_first(vertices);
   auto& point_of = result.point_of_vertex;
-  // first[i] <= i, so by the time i is numbered its first vertex has been.
+  // first[i] <= i, so the first vertex is numbered before vertex i.
   for (std::size_t i = 0; i < n; ++i) {
     if (point_of[i] == i) {
       point_of[i] = static_cast<std::uint32_t>(result.points.size());
