@@ -1,4 +1,4 @@
-// Bytes that several threads made piece by piece. Internal to engine/mesh.
+// Concatenation of byte blocks that several threads produced. Internal to engine/io.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 
 namespace triglyph {
 
-// The parts one after another; each is released as soon as it is copied.
+// Returns the concatenated parts. Each part is released as soon as it is copied.
 [[nodiscard]] inline std::vector<char> join(std::vector<std::vector<char>> parts) {
   if (parts.size() == 1) return std::move(parts.front());
   std::size_t total = 0;

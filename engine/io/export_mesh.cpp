@@ -65,7 +65,7 @@ void put_binary(Bytes& out, double number, Scalar scalar, bool is_big_endian) {
   put_range(out, raw, raw + size_of(scalar));
 }
 
-// Appends what row(i, out) writes for i in [0, n), in order.
+// Appends the output of row(i, out) for i in [0, n), in order.
 template <typename Row>
 void append_rows(std::vector<Bytes>& parts, std::size_t n, const Row& row) {
   const std::size_t first = parts.size();
@@ -76,7 +76,7 @@ void append_rows(std::vector<Bytes>& parts, std::size_t n, const Row& row) {
         Bytes& part = parts[first + begin / kRowBlock];
         for (std::size_t i = begin; i < end; ++i) {
           row(i, part);
-          // Rows are about equally long, so the first tells the size of all.
+          // Rows are about equally long, so the first predicts the size of all.
           if (i == begin) part.reserve((part.size() + part.size() / 4) * (end - begin));
         }
       },

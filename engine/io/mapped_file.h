@@ -1,4 +1,4 @@
-// A regular file mapped into memory for reading, released with the object.
+// Read-only memory mapping of a regular file.
 #pragma once
 
 #include <cstddef>
@@ -9,9 +9,9 @@ namespace triglyph {
 
 class MappedFile {
  public:
-  // Never blocks on a pipe or a device: what is no regular file is refused.
-  // Throws Error Unreadable (absent, no permission, not a regular file, empty), with the reason.
-  // note: a file that another process shortens while it is mapped ends this process by SIGBUS.
+  // Maps the file. Throws Error Unreadable, with the reason, if it does not exist, may not be read,
+  // is empty or is no regular file; a pipe or device is refused without blocking.
+  // note: if another process truncates the file while it is mapped, this process ends with SIGBUS.
   [[nodiscard]] static MappedFile open(const std::filesystem::path& path);
 
   MappedFile() = default;

@@ -18,7 +18,7 @@
 namespace triglyph {
 namespace {
 
-constexpr std::size_t kStyleSample = 4096;    // vertices whose tokens show the number style
+constexpr std::size_t kStyleSample = 4096;    // vertices from which the number style is learned
 constexpr std::size_t kPatchBlock = 1 << 16;  // vertices patched by one thread
 
 FileContent read_content(const Source& source) {
@@ -33,7 +33,7 @@ FileContent read_content(const Source& source) {
               "unknown ending '" + ending + "' (known: .obj .off .ply .stl)");
 }
 
-// The number token at `begin`, which the reader has accepted.
+// Returns the number token at `begin`, which the reader has accepted.
 std::string_view number_at(std::span<const char> bytes, std::uint64_t begin) {
   std::uint64_t end = begin;
   const auto is_part = [](char c) {
@@ -52,7 +52,7 @@ struct MeshFile::Content {
   FileFormat format = FileFormat::Obj;
   CoordinatePlaces places;
   std::array<NumberStyle, 3> style;           // of each axis, in text
-  std::array<int, 3> axis_order = {0, 1, 2};  // as they follow each other in the file
+  std::array<int, 3> axis_order = {0, 1, 2};  // in the order of the file
   Vec3 magnitude = {0, 0, 0};
   std::vector<std::uint32_t> point_of_vertex;
   std::size_t face_count = 0;

@@ -1,6 +1,7 @@
-// A mesh file as bytes plus the places of its coordinates. Reading never allocates by a count the
-// file merely claims; writing copies the input's bytes and replaces only the coordinates of points
-// that moved, so materials, comments, order and line ends stay as they are.
+// A mesh file: its bytes, the mesh, and the places of the coordinates in the bytes. Reading never
+// allocates memory on the strength of a count that the file claims. Writing copies the input's
+// bytes and replaces only the coordinates of points that moved, so materials, comments, order and
+// line ends are preserved.
 #pragma once
 
 #include <cstdint>
@@ -16,18 +17,19 @@ namespace triglyph {
 
 enum class FileFormat { Obj, Off, PlyAscii, PlyLittle, PlyBig, StlAscii, StlBinary };
 
-// Stable name for records ("ply binary_little_endian").
+// Returns the stable name that records use ("ply binary_little_endian").
 [[nodiscard]] std::string_view name_of(FileFormat format) noexcept;
 
 class MeshFile {
  public:
-  // Maps the file and reads it in one pass. The format follows the file name's ending (.obj, .off,
-  // .ply, .stl in any case); ascii and binary are told apart by structure.
-  // Throws Error: Unreadable (absent, no permission, not a regular file, empty), Malformed (with
-  // line or byte), Unsupported (unknown ending or variant). O(bytes).
+  // Maps the file and reads it in one pass. The extension (.obj, .off, .ply, .stl in any case)
+  // names the format; ASCII and binary variants are recognised by their structure. Throws Error:
+  // Unreadable (does not exist, no permission, not a regular file, empty), Malformed (with line or
+  // byte), Unsupported (unknown extension or variant). O(bytes).
   [[nodiscard]] static MeshFile open(const std::filesystem::path& path);
 
-  // The same for bytes in memory: `name` gives the ending and stands in messages.
+  // Reads a file that is in memory. `name` supplies the extension and appears in messages. Throws
+  // as open() does.
   [[nodiscard]] static MeshFile read(std::vector<char> bytes, const std::filesystem::path& name);
 
   MeshFile(MeshFile&&) noexcept;
@@ -36,29 +38,33 @@ class MeshFile {
 
   [[nodiscard]] FileFormat format() const;
   [[nodiscard]] std::span<const char> bytes() const;
-  [[nodiscard]] std::size_t vertex_count() const;  // coordinate triples in the file (STL: corners)
-  [[nodiscard]] std::size_t face_count() const;    // faces as the file counts them, polygons as one
 
-  // Points welded by equal coordinates (-0 equals 0, no tolerance), numbered by first appearance;
-  // polygons cut into triangles the same way whatever corner they start at; triangles that repeat
-  // a point are left out.
+  // Returns the number of coordinate triples in the file; in STL, three per face.
+  [[nodiscard]] std::size_t vertex_count() const;
+
+  // Returns the number of faces in the file, a polygon counting once.
+  [[nodiscard]] std::size_t face_count() const;
+
+  // Returns the mesh. Vertices with equal coordinates (-0 equals 0, no tolerance) are welded into
+  // one point, numbered by first appearance; polygons are triangulated independently of the corner
+  // they start at; triangles that repeat a point are left out.
   [[nodiscard]] const Mesh& mesh() const;
 
-  // The point of every coordinate triple in the file.
+  // Returns the point of every vertex of the file.
   [[nodiscard]] std::span<const std::uint32_t> point_of_vertex() const;
 
-  // The nearest point the file's own number format can hold. Text files get no more decimals and
-  // no more significant digits than they have, so a file of "%.6f" or "%g" stays one.
+  // Returns the nearest point that the file's number format can represent. Text files get no more
+  // decimals and no more significant digits than they have, so a file of "%.6f" or "%g" stays one.
   [[nodiscard]] Vec3 round(const Vec3& point) const;
 
-  // The largest distance, along one axis, between neighbouring numbers of the file's format at the
-  // magnitudes that occur in it; model units.
+  // Returns the largest distance, in model units along one axis, between neighbouring numbers of
+  // the file's format at the magnitudes that occur in it.
   [[nodiscard]] double number_step() const;
 
-  // The file with point i at positions[i]. A coordinate that is where it was, or that rounds to
-  // where it was, keeps its bytes; every other one reads back as round(positions[i]).
-  // note: polygons are cut by their positions, so the triangles read back can be cut another way.
-  // Precondition: positions.size() == mesh().positions.size(), all finite.
+  // Returns the bytes of the file with point i moved to positions[i]. A coordinate that rounds to
+  // its old value keeps its bytes; every other one reads back as that of round(positions[i]).
+  // Precondition: positions.size() == mesh().positions.size(), all finite. O(bytes).
+  // note: the triangulation of polygons depends on positions, so it can differ after reading back.
   [[nodiscard]] std::vector<char> patched(std::span<const Vec3> positions) const;
 
  private:

@@ -12,9 +12,11 @@
 namespace triglyph {
 namespace {
 
-constexpr int kMaxSignificant = 17;            // a double holds no more
-constexpr int kMaxExactPower = 22;             // 10^22 is the last power of ten a double holds
-constexpr std::size_t kEnoughToTell = 40;      // tokens: 0.9^40 is 1 in 70
+constexpr int kMaxSignificant = 17;  // a double holds no more
+constexpr int kMaxExactPower = 22;   // 10^22 is the last power of ten a double holds
+// Tokens of equal length from which on zeros count as not trimmed: if they were, one number in ten
+// would be shorter, and 40 numbers would miss that with a probability of 1 in 70.
+constexpr std::size_t kMinFixedTokens = 40;
 constexpr double kMaxExactInteger = 0x1.0p53;  // below it every integer is a double
 
 constexpr std::array<double, 23> kPower = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
@@ -25,8 +27,8 @@ constexpr bool is_digit(char c) noexcept {
   return c >= '0' && c <= '9';
 }
 
-// The rare long way: many digits or a large exponent. `magnitude` is the power of ten of the first
-// digit, which tells an underflow from an overflow.
+// The slow path for many digits or a large exponent. `magnitude` is the power of ten of the first
+// digit, which distinguishes underflow from overflow.
 ParsedNumber parse_slowly(const char* begin, const char* end, std::int64_t magnitude) noexcept {
   const bool negative = *begin == '-';
   if (*begin == '+') ++begin;  // std::from_chars takes none
@@ -39,7 +41,8 @@ ParsedNumber parse_slowly(const char* begin, const char* end, std::int64_t magni
   return {0, nullptr};
 }
 
-// Digits before the point; zero or negative for numbers below 1 (0.05 has -1). Precondition: v > 0.
+// Returns the number of digits before the point; zero or negative for numbers below 1 (-1 for
+// 0.05). Precondition: v > 0.
 int integer_digits(double v) {
   if (v >= 1) {
     int digits = 1;
@@ -51,20 +54,20 @@ int integer_digits(double v) {
   return static_cast<int>(std::floor(std::log10(v))) + 1;
 }
 
-// round(v * 10^decimals) if that is certain in double arithmetic, for |v| rounded the way the
-// exact value would be.
+// Returns magnitude * 10^decimals, rounded as the exact product would be, if double arithmetic can
+// decide that.
 std::optional<std::uint64_t> scaled_integer(double magnitude, int decimals) {
   if (decimals > kMaxExactPower) return std::nullopt;
   const double scaled = magnitude * kPower[decimals];
   if (!(scaled < kMaxExactInteger / 2)) return std::nullopt;
   const auto whole = static_cast<std::uint64_t>(scaled);
   const double rest = scaled - static_cast<double>(whole);
-  // The product is off by half a unit in the last place at most; near a tie it decides nothing.
+  // The product is off by at most half a unit in the last place, so near a tie it decides nothing.
   if (std::abs(rest - 0.5) <= scaled * 0x1.0p-51) return std::nullopt;
   return rest > 0.5 ? whole + 1 : whole;
 }
 
-// Removes zeros after the point, and the point when nothing is left behind it.
+// Removes trailing zeros, and the point if no digit is left behind it.
 char* trim_zeros(const NumberStyle& style, char* begin, char* end) {
   if (std::find(begin, end, '.') == end) return end;
   while (end[-1] == '0') --end;
@@ -128,7 +131,7 @@ char* print_scientific(const NumberStyle& style, double value, int precision, ch
   return std::copy(exponent + 2, end, p);
 }
 
-// What one token adds to the style.
+// The properties of one token.
 struct TokenShape {
   int decimals = 0;
   int significant = 0;
@@ -199,7 +202,7 @@ ParsedNumber parse_number(const char* begin, const char* end) noexcept {
     if (q != end && (*q == '-' || *q == '+')) shrinks = *q++ == '-';
     if (q == end || !is_digit(*q)) return {0, nullptr};
     std::int64_t power = 0;
-    // Past a million the sign alone decides, unless the file holds a million zeros to match.
+    // Beyond a million only the sign matters, unless the token has a million zeros.
     for (; q != end && is_digit(*q); ++q)
       power = std::min<std::int64_t>(power * 10 + (*q - '0'), 1000000);
     written_power = shrinks ? -power : power;
@@ -246,9 +249,8 @@ NumberStyle learn_style(std::span<const std::string_view> tokens) {
     same_decimals &= shape.decimals == first_decimals;
   }
   style.significant = std::clamp(style.significant, 1, kMaxSignificant);
-  // Where zeros are cut off, one number in ten is shorter than the others.
   style.is_fixed = exponents == 0 && same_decimals && style.decimals > 0 &&
-                   (has_trailing_zero || tokens.size() > kEnoughToTell);
+                   (has_trailing_zero || tokens.size() > kMinFixedTokens);
   style.trims_zeros = !has_trailing_zero && !style.is_fixed;
   style.drops_leading_zero = bare_points > zero_points;
   if (exponents > 0)
@@ -276,7 +278,7 @@ double step_at(const NumberStyle& style, double value) {
     const int decimals = decimals_at(style, value);
     step = decimals <= kMaxExactPower ? 1 / kPower[decimals] : std::pow(10.0, -decimals);
   }
-  // Many digits name the same double twice.
+  // With many digits, several decimal numbers give the same double.
   return std::max(step, magnitude - std::nextafter(magnitude, -1.0));
 }
 

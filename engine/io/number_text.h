@@ -1,5 +1,5 @@
-// Decimal numbers in text files: reading one, and writing one in the manner of the file it goes
-// into, so that no reader can tell from its digits which coordinates were moved.
+// Decimal numbers in text files: parsing, and formatting in the style of the file, so that the
+// digits do not reveal which coordinates were moved.
 #pragma once
 
 #include <cstddef>
@@ -11,57 +11,59 @@ namespace triglyph {
 
 struct ParsedNumber {
   double value;
-  const char* end;  // one past the number; null: no finite decimal number starts here
+  const char* end;  // one past the number; null: no finite decimal number starts at `begin`
 };
 
-// Reads the longest decimal number at `begin`: an optional sign, digits with an optional point
-// (".5" and "5." count), an optional exponent. Correctly rounded whatever the locale; what is too
-// small becomes zero, what is too large is refused, as are nan, inf and hexadecimal.
-// The caller checks that a separator follows.
+// Parses the longest decimal number at `begin`: an optional sign, digits with an optional point
+// (".5" and "5." are numbers) and an optional exponent. The value is correctly rounded whatever the
+// locale. Underflow gives zero; overflow, nan, inf and hexadecimal numbers are refused. Does not
+// check that a separator follows.
 [[nodiscard]] ParsedNumber parse_number(const char* begin, const char* end) noexcept;
 
 enum class Notation {
   Fixed,       // 0.0000123
-  General,     // like %g: an exponent below 1e-4 alone
+  General,     // like %g: an exponent only below 1e-4
   Scientific,  // every number has an exponent
 };
 
-// How the numbers of one text file are written.
+// The style in which the numbers of one text file are written.
 struct NumberStyle {
   int decimals = 0;                 // most digits after the point
-  int significant = 1;              // most digits from the first that is not zero; at most 17
+  int significant = 1;              // most significant digits; at most 17
   bool is_fixed = false;            // every number has exactly `decimals` digits after the point
   bool trims_zeros = true;          // 1.5, not 1.500000
   bool keeps_point_zero = false;    // 1.0, where trims_zeros would say 1
   bool drops_leading_zero = false;  // .5, not 0.5
   Notation notation = Notation::Fixed;
-  int exponent_digits = 2;          // at least
+  int exponent_digits = 2;          // fewest digits of an exponent
   bool has_upper_exponent = false;  // 1E-5
 
   bool operator==(const NumberStyle&) const = default;
 };
 
-// The style that the tokens share; each must be a number that parse_number accepts as a whole.
-// No token at all gives integers. O(characters).
+// Returns the style that the tokens share; integers if there are none. Precondition: parse_number
+// accepts each token as a whole. O(characters).
 [[nodiscard]] NumberStyle learn_style(std::span<const std::string_view> tokens);
 
-// A number that moved to `value` gets this many decimals: never more than the file's most, and
-// never more significant digits than the file's most.
+// Returns the number of decimals with which `value` is written: as many as the style's most
+// decimals and its most significant digits both allow.
 [[nodiscard]] int decimals_at(const NumberStyle& style, double value);
 
-// The distance between neighbouring numbers of the style at the magnitude of `value`.
+// Returns the distance between neighbouring numbers of the style at the magnitude of `value`.
 [[nodiscard]] double step_at(const NumberStyle& style, double value);
 
-// What parse_number makes of format_number(style, value); never -0.
+// Returns the value that format_number(style, value) reads back as; never -0.
 [[nodiscard]] double round_to(const NumberStyle& style, double value);
 
-inline constexpr std::size_t kNumberCapacity = 768;  // longest fixed double, with room
+// Room for the longest double in fixed notation: a sign, 309 digits, a point and the decimals.
+inline constexpr std::size_t kNumberCapacity = 768;
 
-// Writes the number to `out`, which has room for kNumberCapacity characters; returns its end.
-// Precondition: value is finite. Never writes a negative zero.
+// Writes the number to `out` and returns the end of the text; never writes a negative zero.
+// Preconditions: `out` has room for kNumberCapacity characters, and `value` is finite.
 char* format_number(const NumberStyle& style, double value, char* out);
 
-// For messages: the bytes at `begin` up to the next blank, cut to 24 and made printable.
+// Returns the token at `begin` for an error message: up to the next blank, at most 24 characters,
+// printable.
 [[nodiscard]] std::string show_token(const char* begin, const char* end);
 
 }  // namespace triglyph

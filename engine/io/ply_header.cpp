@@ -72,7 +72,7 @@ class HeaderReader {
       } else if (words[0] == "property") {
         read_property(words);
       }
-      // Other lines are passed over: some exporters forget the word "comment".
+      // Other lines are skipped: some exporters omit the word "comment".
     }
     if (!has_format_) fail("the header names no format");
     header_.payload = at_;

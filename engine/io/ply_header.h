@@ -1,4 +1,4 @@
-// The header of a PLY file: elements, their properties, and where the payload starts.
+// The header of a PLY file: the elements, their properties, and the offset of the data.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace triglyph {
 struct PlyProperty {
   std::string name;
   bool is_list = false;
-  Scalar count = Scalar::UInt8;  // of a list
+  Scalar count = Scalar::UInt8;  // type of a list's length
   Scalar scalar = Scalar::Float32;
 };
 
@@ -21,7 +21,7 @@ struct PlyElement {
   std::uint64_t rows = 0;
   std::vector<PlyProperty> properties;
 
-  // Bytes of a row in a binary file, empty lists counted by their length field alone.
+  // Returns the least number of bytes of a row in a binary file: all lists empty.
   [[nodiscard]] std::size_t smallest_row() const noexcept;
   [[nodiscard]] bool has_lists() const noexcept;
 };
@@ -29,10 +29,10 @@ struct PlyElement {
 struct PlyHeader {
   FileFormat format = FileFormat::PlyAscii;
   std::vector<PlyElement> elements;
-  std::size_t payload = 0;  // first byte behind the line feed that ends end_header
+  std::size_t payload = 0;  // offset of the data, after the line feed of end_header
 };
 
-// Throws Error Malformed or Unsupported, with the line.
+// Parses the header. Throws Error Malformed or Unsupported, with the line.
 [[nodiscard]] PlyHeader read_ply_header(const Source& source);
 
 }  // namespace triglyph

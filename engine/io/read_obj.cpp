@@ -1,4 +1,4 @@
-// Wavefront OBJ: `v` and `f` lines are read, everything else is passed over and stays in the file.
+// Wavefront OBJ. Reads `v` and `f` lines; skips all others, which stay in the file.
 #include <algorithm>
 #include <cstring>
 #include <limits>
@@ -34,7 +34,7 @@ class ObjReader {
   [[nodiscard]] std::uint64_t largest_index() const noexcept { return largest_index_; }
 
  private:
-  // By the bytes of usual lines; memory that stays unused is never touched.
+  // Reserves by the length of common lines; reserved memory that stays unused is never touched.
   void reserve() {
     const std::size_t bytes = scan_.bytes_left();
     content_.vertices.reserve(bytes / 64 + 1);
@@ -47,7 +47,8 @@ class ObjReader {
     return next == scan_.end() || scan_.is_separator(*next);
   }
 
-  // The backslash that joins this line with the next, as a blank.
+  // Returns the position behind a backslash that joins this line with the next, which counts as
+  // blank.
   [[nodiscard]] const char* behind_continuation(const char* p) const noexcept {
     if (*p++ != '\\') return nullptr;
     if (p != scan_.end() && *p == '\r' && scan_.line_end() == '\n') ++p;
@@ -72,7 +73,7 @@ class ObjReader {
       if (last <= begin || *last != scan_.line_end()) return;
       if (last[-1] == '\r' && last - 1 > begin && scan_.line_end() == '\n') --last;
       if (last[-1] != '\\') return;
-      // A comment ends with its line: many end with a Windows path.
+      // Comments are not continued: some end with a Windows path.
       if (std::memchr(begin, '#', static_cast<std::size_t>(last - begin)) != nullptr) return;
     }
   }
@@ -103,11 +104,11 @@ class ObjReader {
       scan_.fail("a face needs three corners, found " +
                  std::to_string(faces.corners.size() - first));
     }
-    if (faces.corners.size() > kMaxCount) return;  // refused when all is read
+    if (faces.corners.size() > kMaxCount) return;  // refused at the end
     faces.ends.push_back(static_cast<std::uint32_t>(faces.corners.size()));
   }
 
-  // Reads i, i/j, i//k or i/j/k; j and k stay in the file unread. Returns the vertex from zero.
+  // Reads i, i/j, i//k or i/j/k, and ignores j and k. Returns the vertex, numbered from 0.
   std::uint32_t take_corner() {
     const char* p = scan_.position();
     const char* end = scan_.end();
@@ -154,7 +155,7 @@ FileContent read_obj(const Source& source) {
   ObjReader reader(source, kMaxCount);
   FileContent content = reader.read();
   if (reader.largest_index() > content.vertices.size()) {
-    // A face may come before its vertices, so the line is known only in a second pass.
+    // A face may precede its vertices, so only a second pass can name the line.
     return ObjReader(source, content.vertices.size()).read();
   }
   return content;

@@ -1,5 +1,5 @@
-// Object File Format of Geomview, text only. A vertex row and a face row are one line each, since
-// only the line tells the numbers that belong to the format from those that a variant adds.
+// Object File Format (OFF) of Geomview, text only. Each vertex and each face takes one line, since
+// only the line separates the numbers of the format from those that a variant adds.
 #include <string>
 
 #include "engine/base/error.h"
@@ -36,7 +36,7 @@ class OffReader {
   }
 
  private:
-  // No more rows than the bytes that are left can hold.
+  // Returns the count, limited to the rows that the remaining bytes can hold.
   [[nodiscard]] std::size_t bounded(std::int64_t count, std::size_t smallest_row) const {
     return std::min(static_cast<std::size_t>(count), scan_.bytes_left() / smallest_row + 1);
   }

@@ -1,5 +1,5 @@
-// Stanford PLY, ascii and binary: elements and properties in any order and of any type. One walk
-// over the rows serves both encodings; what differs is where the next value comes from.
+// Stanford PLY, ASCII and binary, with elements and properties in any order and of any type. One
+// walk over the rows serves both encodings; only the source of the next value differs.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,7 +15,7 @@
 namespace triglyph {
 namespace {
 
-// Values from blank-separated text.
+// Reads values from blank-separated text.
 class TextPayload {
  public:
   TextPayload(const Source& source, const PlyHeader& header) : scan_(source) {
@@ -41,7 +41,7 @@ class TextPayload {
   }
   bool skip_rows(const PlyElement&) { return false; }
   void expect_room(std::uint64_t count, std::size_t) {
-    // A value takes a character and a blank; the last one may lack the blank.
+    // A value takes at least a character and a blank, except the last, which needs no blank.
     if (count > (scan_.bytes_left() + 1) / 2) fail("the file ends inside its elements");
   }
   static std::size_t room(const PlyElement& element) { return element.properties.size(); }
@@ -54,7 +54,7 @@ class TextPayload {
   TextScan scan_;
 };
 
-// Values of fixed size in the file's byte order.
+// Reads values of fixed size in the byte order of the file.
 class BinaryPayload {
  public:
   BinaryPayload(const Source& source, const PlyHeader& header)
@@ -76,7 +76,7 @@ class BinaryPayload {
     expect_room(static_cast<std::uint64_t>(count), size_of(scalar));
     p_ += static_cast<std::uint64_t>(count) * size_of(scalar);
   }
-  // Rows of one size need no walk.
+  // Skips an element whose rows have one size. Returns false for others.
   bool skip_rows(const PlyElement& element) {
     if (element.has_lists()) return false;
     expect_room(element.rows, element.smallest_row());
@@ -131,7 +131,7 @@ class PlyReader {
   FileContent read() {
     find_vertex_element();
     for (const PlyElement& element : header_.elements) {
-      if (element.properties.empty()) continue;  // rows without a byte, however many
+      if (element.properties.empty()) continue;  // rows of zero bytes
       payload_.expect_room(element.rows, payload_.room(element));
       if (element.name == "vertex") {
         read_vertices(element);
@@ -162,7 +162,7 @@ class PlyReader {
     }
   }
 
-  // 0, 1, 2 for x, y, z; 3 for everything else.
+  // Returns 0, 1, 2 for x, y, z and 3 for any other property.
   [[nodiscard]] int axis_at(std::size_t property) const {
     return static_cast<int>(std::find(axis_of_, axis_of_ + 3, property) - axis_of_);
   }
@@ -249,7 +249,7 @@ class PlyReader {
     }
   }
 
-  // An index is kept if some vertex count could allow it; the vertices may follow the faces.
+  // Accepts any index below the greatest vertex count, since the vertices may follow the faces.
   std::uint32_t as_index(std::int64_t index) {
     if (index < 0 || index >= static_cast<std::int64_t>(kMaxCount)) {
       payload_.fail("vertex index " + std::to_string(index) + " is out of range");
@@ -266,8 +266,8 @@ class PlyReader {
     faces.ends.push_back(static_cast<std::uint32_t>(faces.corners.size()));
   }
 
-  // Every corner from the third on closes a triangle with the two before it; the sides take turns,
-  // and -1 starts a new strip.
+  // Reads triangle strips: every corner from the third on forms a triangle with the two before it,
+  // with alternating orientation; -1 starts a new strip.
   void read_strip(const PlyProperty& property) {
     Faces& faces = content_.faces;
     const std::int64_t length = take_length(property);

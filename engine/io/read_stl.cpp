@@ -1,5 +1,5 @@
-// Stereolithography, ascii and binary. The two are told apart by structure, because many binary
-// files begin with the word "solid".
+// Stereolithography (STL), ASCII and binary. The variants are distinguished by structure, because
+// many binary files begin with the word "solid".
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -72,7 +72,7 @@ class AsciiReader {
 
   void read_facet() {
     expect("normal");
-    // Normals stay as they are, so even a "nan" of a facet without area is none of our business.
+    // Normals are not used, so a "nan" of a degenerate facet is accepted.
     for (int axis = 0; axis < 3; ++axis) {
       scan_.skip_space(false);
       (void)scan_.take_token();
@@ -129,7 +129,8 @@ FileContent read_binary(const Source& source, std::uint64_t facets) {
   return content;
 }
 
-// Does the text grammar hold up to the first facet or to the end of an empty solid?
+// Returns whether the bytes follow the text grammar up to the first facet or the end of an empty
+// solid.
 bool looks_like_text(const Source& source) {
   TextScan scan(source);
   scan.skip_space(false);

@@ -1,5 +1,5 @@
-// What the reader of each format hands to MeshFile: the coordinates, the faces, and the place of
-// every coordinate in the file's bytes. Internal to engine/io.
+// Readers of the file formats. Each returns the coordinates, the faces, and the place of every
+// coordinate in the file's bytes. Internal to engine/io.
 #pragma once
 
 #include <array>
@@ -17,21 +17,24 @@ namespace triglyph {
 
 struct Source {
   std::span<const char> bytes;
-  const std::filesystem::path& path;  // for messages alone
+  const std::filesystem::path& path;  // used only in messages
 };
 
-// Vertices and corners are counted in 32 bits, the last value kept free for "none".
+// Most vertices, and most corners, of a file: indices have 32 bits, and the last value means
+// "none".
 inline constexpr std::uint64_t kMaxCount = 0xfffffffe;
 
 enum class Scalar : std::uint8_t { Int8, UInt8, Int16, UInt16, Int32, UInt32, Float32, Float64 };
 
-// Where the three coordinates of a vertex start: y and z relative to x, before or behind it.
+// Offsets of the three coordinates of a vertex in a text file; y and z are relative to x and may be
+// negative.
 struct TokenPlace {
   std::uint64_t x;
   std::int32_t y, z;
 };
 
-// Rows of equal size: vertex v lies at base + v / group * group_stride + v % group * stride.
+// Coordinates in rows of equal size: vertex v starts at
+// base + v / group * group_stride + v % group * stride. A group is a face of a binary STL file.
 struct RowPlaces {
   std::uint64_t base = 0;
   std::uint64_t group = 1;
@@ -44,10 +47,10 @@ struct CoordinatePlaces {
   bool is_text = true;
   bool is_big_endian = false;
   std::array<Scalar, 3> scalar = {Scalar::Float64, Scalar::Float64, Scalar::Float64};
-  std::vector<TokenPlace> tokens;  // one a vertex; empty: `rows` holds
+  std::vector<TokenPlace> tokens;  // one per vertex; empty: `rows` applies
   RowPlaces rows;
 
-  // The byte where the coordinate starts.
+  // Returns the byte offset of a coordinate.
   [[nodiscard]] std::uint64_t offset(std::size_t vertex, int axis) const noexcept {
     if (!tokens.empty()) {
       const TokenPlace& place = tokens[vertex];
@@ -67,20 +70,25 @@ struct FileContent {
   CoordinatePlaces places;
 };
 
-// Each throws Error Malformed (with line or byte) or Unsupported; one pass, O(bytes), and never
-// more memory than a fixed multiple of the bytes whatever counts the file claims.
+// Read one format in one pass. Memory is bounded by a fixed multiple of the file's size, whatever
+// counts the file claims. Throw Error Malformed (with line or byte) or Unsupported. O(bytes).
 [[nodiscard]] FileContent read_obj(const Source& source);
 [[nodiscard]] FileContent read_off(const Source& source);
 [[nodiscard]] FileContent read_ply(const Source& source);
 [[nodiscard]] FileContent read_stl(const Source& source);
 
-// A scalar of a binary file as a double, and back: integers are rounded and saturated, a float
-// that is too large becomes the largest one.
-[[nodiscard]] std::size_t size_of(Scalar scalar) noexcept;
+[[nodiscard]] std::size_t size_of(Scalar scalar) noexcept;  // in bytes
 [[nodiscard]] bool is_integer(Scalar scalar) noexcept;
+
+// Convert a scalar of a binary file to a double, and back. Storing rounds and saturates integers,
+// and replaces a number beyond the range of float by the largest float.
 [[nodiscard]] double load(const char* bytes, Scalar scalar, bool is_big_endian) noexcept;
 void store(double value, Scalar scalar, bool is_big_endian, char* bytes) noexcept;
+
+// Returns the value that store() keeps of `value`.
 [[nodiscard]] double round_to(Scalar scalar, double value) noexcept;
+
+// Returns the distance between neighbouring numbers of the type at the magnitude of `value`.
 [[nodiscard]] double step_at(Scalar scalar, double value) noexcept;
 
 }  // namespace triglyph

@@ -41,7 +41,7 @@ void store_as(double value, bool is_big_endian, char* bytes) noexcept {
   if (is_big_endian) std::reverse(bytes, bytes + sizeof(T));
 }
 
-// Calls visit with a value of the scalar's C++ type.
+// Calls visit() with a value of the C++ type of the scalar.
 template <typename Visit>
 auto with_type(Scalar scalar, const Visit& visit) noexcept {
   switch (scalar) {

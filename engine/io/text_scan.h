@@ -1,5 +1,4 @@
-// Walking through the bytes of a text file, and the errors that name a line in it. Internal to the
-// readers.
+// A cursor over the bytes of a text file, with errors that name the line. Internal to the readers.
 #pragma once
 
 #include <cstddef>
@@ -17,8 +16,8 @@ inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 class TextScan {
  public:
-  // A file without any line feed that has carriage returns ends its lines with those. A UTF-8
-  // byte order mark is skipped. Throws Unsupported for UTF-16.
+  // Starts behind a UTF-8 byte order mark, if there is one. Lines end at line feeds, or at carriage
+  // returns in a file without any line feed. Throws Error Unsupported for UTF-16.
   explicit TextScan(const Source& source);
 
   [[nodiscard]] bool at_end() const noexcept { return p_ == end_; }
@@ -35,18 +34,19 @@ class TextScan {
     return c == ' ' || (c >= '\t' && c <= '\r') || c == '#' || c == '\\';
   }
 
-  // Blanks inside the line.
+  // Skips blanks within the line.
   void skip_blanks() noexcept {
     while (p_ != end_ && is_blank(*p_)) ++p_;
   }
-  // Behind the next line end.
+  // Moves behind the next line end.
   void skip_line() noexcept;
-  // To the next token, over lines and, if `comments`, over what follows a '#'.
+  // Moves to the next token, across lines; if `comments`, also skips from a '#' to its line end.
   void skip_space(bool comments) noexcept;
-  // The bytes up to the next blank, line end or file end.
+  // Returns the bytes up to the next blank, line end or file end, and moves behind them.
   [[nodiscard]] std::string_view take_token() noexcept;
 
-  // A number with a separator behind it, or Malformed.
+  // Returns the number at the cursor and moves behind it. Throws Error Malformed if there is none,
+  // or if no separator follows.
   double take_number() {
     const ParsedNumber number = parse_number(p_, end_);
     if (number.end == nullptr || (number.end != end_ && !is_separator(*number.end))) {
@@ -55,7 +55,8 @@ class TextScan {
     p_ = number.end;
     return number.value;
   }
-  // An integer in [low, high] with a separator behind it, or Malformed naming `what`.
+  // Returns the integer at the cursor likewise. Throws Error Malformed, naming `what`, also if it
+  // lies outside [low, high].
   std::int64_t take_integer(std::string_view what, std::int64_t low, std::int64_t high);
 
   [[nodiscard]] std::uint64_t offset(const char* position) const noexcept {
@@ -66,7 +67,7 @@ class TextScan {
     return static_cast<std::size_t>(end_ - p_);
   }
 
-  // Malformed, at the line of the current position; `fail_at` names the token there as well.
+  // Throw Error Malformed with the line of the cursor. fail_at() also quotes the token there.
   [[noreturn]] void fail(const std::string& message) const;
   [[noreturn]] void fail_at(const std::string& message) const;
 
@@ -79,8 +80,8 @@ class TextScan {
   char eol_ = '\n';
 };
 
-// The place of a vertex whose coordinates start at the three positions.
-// Throws Unsupported if they are more than 2 GiB apart.
+// Returns the place of a vertex whose coordinates start at x, y and z. Throws Error Unsupported if
+// they are more than 2 GiB apart.
 [[nodiscard]] TokenPlace place_of(const TextScan& scan, const char* x, const char* y,
                                   const char* z);
 
