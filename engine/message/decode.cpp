@@ -17,7 +17,7 @@ class ChaseDecoder {
 
   [[nodiscard]] std::optional<Message> best() const { return code_.message_of(parts_); }
 
-  // The parts that hold the length decide how many parts there are, so they are varied first.
+  // The parts that hold the length determine the number of parts, so they are varied first.
   [[nodiscard]] std::optional<Message> vary(int doubtful) {
     const auto part_bits = static_cast<std::size_t>(code_.format().part_bits);
     const std::size_t header = std::min((8 + part_bits - 1) / part_bits, parts_.size());
@@ -39,8 +39,8 @@ class ChaseDecoder {
     if (rank < ranking.size()) parts_[index] = ranking[rank].part;
   }
 
-  // Calls attempt() with the best or the second best value of these parts, in all ways, until it
-  // answers.
+  // Calls attempt() with all combinations of the best and second best values of these parts until
+  // it returns a message.
   template <typename Attempt>
   std::optional<Message> for_each_way(const std::vector<std::size_t>& indices,
                                       const Attempt& attempt) {

@@ -1,4 +1,4 @@
-// From votes to the message.
+// Decoding of votes into a message.
 #pragma once
 
 #include <cstdint>
@@ -11,16 +11,18 @@ namespace triglyph {
 
 struct Decoded {
   std::optional<Message> message;  // nothing: no mark under this key
-  // Chance that votes which mean nothing yield a message: 2^-32, the tag's, times the most values
-  // that could have been tried.
+  // Probability that random votes yield a message: 2^-32 for the tag, times the number of candidate
+  // messages that can be tried.
   double false_alarm = 0;
 };
 
-// The message of the best value of every part; if its tag is wrong, with the second best in place
-// of up to `doubtful` parts, in all 2^doubtful ways: the parts that hold the length, then those
-// whose second best is least behind. 0 <= doubtful <= 16. This work is based on: Chase. A class of
-// algorithms for decoding block codes with channel measurement information. IEEE Transactions on
-// Information Theory 18 (1972).
+// Returns the message that the best value of every part gives. If its tag is wrong, tries all
+// 2^doubtful ways of replacing the best value by the second best in `doubtful` parts: first those
+// that hold the length, then those whose two scores are closest. Precondition: 0 <= doubtful <= 16.
+// O(2^doubtful * message).
+// This work is based on:
+// Chase. A class of algorithms for decoding block codes with channel measurement information. IEEE
+// Transactions on Information Theory 18 (1972).
 [[nodiscard]] Decoded decode(const Votes& votes, const WordCode& code, int doubtful);
 
 }  // namespace triglyph

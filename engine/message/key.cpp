@@ -31,12 +31,12 @@ std::array<std::uint8_t, N> hash(std::span<const std::uint8_t> bytes,
   return digest;
 }
 
-// Eight hexadecimal digits that catch a mistyped or torn key file.
+// Returns eight hexadecimal digits that reveal a mistyped or truncated key file.
 std::string check_digits(std::span<const std::uint8_t> secret) {
   return to_hex(hash<crypto_generichash_BYTES_MIN>(secret)).substr(0, 8);
 }
 
-// An open file descriptor that closes itself.
+// A file descriptor that is closed on destruction.
 struct Descriptor {
   int fd = -1;
   ~Descriptor() {

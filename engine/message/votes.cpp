@@ -10,7 +10,9 @@
 namespace triglyph {
 namespace {
 
-constexpr double kMismatch = 0.15;  // what a vote is worth for a value that differs in a firm bit
+// Share of a vote for a value that differs in one bit, if that bit was read at the centre of its
+// cell.
+constexpr double kMismatch = 0.15;
 
 }  // namespace
 

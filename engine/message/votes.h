@@ -1,8 +1,8 @@
-// Repeats of a part, found in different places of a mesh, vote for its value. A genuine unit sits
-// at the centres of its cells while chance look-alikes are spread evenly over them, so a vote
-// weighs more the nearer the invariants are to the centres. Look-alikes seldom agree on a whole
-// value, so values are voted on, not single bits; a value that differs in a bit or two still gets a
-// little.
+// Voting on the values of parts. Copies of a part, read from different units, vote for its value.
+// The invariants of a genuine unit lie at the centres of their quantiser cells, whereas those of a
+// false positive are spread evenly over them, so a vote weighs more the closer its invariants are
+// to the centres. False positives rarely agree on a whole value; votes are therefore for values and
+// not for single bits, but a value that differs in a bit or two still gets a small share.
 #pragma once
 
 #include <array>
@@ -17,15 +17,15 @@ namespace triglyph {
 // One unit whose marker was found in a mesh.
 struct Reading {
   std::uint32_t anchor = 0;             // the unit's anchor in the mesh that was read
-  Word word;                            // the bits that stand there
-  float weight = 0;                     // product of the closeness of all its invariants, 0..1
-  float worst_offset = 0;               // farthest from a cell centre; 1 is the cell's border
+  Word word;                            // the bits read from it
+  float weight = 0;                     // product of its invariants' closeness to the centres, 0..1
+  float worst_offset = 0;               // greatest distance from a cell's centre, in half cells
   std::array<float, 32> bit_weights{};  // closeness of the invariant that holds each part bit
 };
 
 class Votes {
  public:
-  // What stands for one part, best first: values and their scores. Empty without votes.
+  // A value of one part and its score. A ranking lists the best first, and is empty without votes.
   struct Choice {
     std::uint32_t part = 0;
     double score = 0;
@@ -34,21 +34,22 @@ class Votes {
 
   explicit Votes(const WordCode& code);
 
+  // Counts the vote of one unit.
   void add(const Reading& reading);
 
-  // For each index below 2^s at most kRanked values. Parallel.
-  // O(readings * kMostValues) at most.
+  // Returns the best values, at most kRanked, of each part index below 2^s.
+  // O(readings * kMostValues) at most, parallel.
   [[nodiscard]] std::vector<Ranking> rankings() const;
 
-  // The best value of each; nothing where no unit voted.
+  // Returns the best value of each part; nothing where no unit voted.
   [[nodiscard]] std::vector<std::optional<std::uint32_t>> parts() const;
 
-  // Agreement of the votes on one part, 0 (tied or none) to 1 (of one mind): the least over its
-  // bits of |for - against| / (for + against).
+  // Returns the agreement of the votes on one part, from 0 (tied, or none) to 1 (unanimous): the
+  // minimum over its bits of |for - against| / (for + against).
   [[nodiscard]] double agreement(std::uint32_t part_index) const;
 
-  static constexpr std::size_t kRanked = 2;
-  static constexpr std::size_t kMostValues = 64;  // the heaviest; others are not considered
+  static constexpr std::size_t kRanked = 2;       // decode() tries the best and the second best
+  static constexpr std::size_t kMostValues = 64;  // the heaviest are ranked: bounds the time
 
  private:
   struct Bit {
@@ -63,7 +64,7 @@ class Votes {
   [[nodiscard]] Ranking rank(const std::vector<Vote>& votes) const;
 
   const WordCode* code_;
-  std::vector<Bit> bits_;  // part_bits a part
+  std::vector<Bit> bits_;  // part_bits per part
   std::vector<std::vector<Vote>> votes_;
 };
 

@@ -8,7 +8,7 @@
 namespace triglyph {
 namespace {
 
-constexpr std::size_t kOffsets = 16;  // more than any scheme has invariants in a unit
+constexpr std::size_t kOffsets = 16;  // more invariants than a unit of any scheme has
 constexpr std::size_t kLengthBits = 8;
 constexpr std::size_t kTagBits = 32;
 
@@ -37,7 +37,8 @@ std::vector<std::uint32_t> keyed_permutation(const Key& key, std::uint32_t size)
   return order;
 }
 
-// Payload bits, least significant bit of each byte first.
+// Returns the length byte, the message and the tag. Bits are taken from the least significant of
+// each byte.
 std::vector<std::uint8_t> payload_bytes(std::span<const std::uint8_t> message, std::uint32_t tag) {
   std::vector<std::uint8_t> bytes;
   bytes.push_back(static_cast<std::uint8_t>(message.size() - 1));
