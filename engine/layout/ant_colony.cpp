@@ -2,9 +2,8 @@
 // Leguizamon, Michalewicz, Schutz. An ant system for the maximum independent set problem (2001).
 // Stutzle, Hoos. MAX-MIN ant system. Future Generation Computer Systems 16 (2000): only the best
 // ant leaves a trail, and trails stay within bounds.
-// 1. An ant's visibility of a unit is 1 / (1 + degree) in the whole graph instead of what is left
-// of
-//    it, so that an ant is a draw and a first fit.
+// Deviation: the visibility of a unit is 1 / (1 + degree) in the whole graph and not in what is
+// left of it, so that one ant is a random order and a first fit.
 #include <algorithm>
 
 #include "engine/base/parallel.h"
@@ -14,9 +13,10 @@
 namespace triglyph {
 namespace {
 
-constexpr std::size_t kAnts = 8;
-constexpr double kEvaporation = 0.1;
-constexpr double kLeastTrail = 0.01;  // of the most, 1
+constexpr std::size_t kAnts = 8;      // per iteration; fixed, so threads do not change the result
+constexpr double kEvaporation = 0.1;  // per iteration
+// Least strength of a trail, relative to the greatest, so that every unit can still be drawn.
+constexpr double kLeastTrail = 0.01;
 
 void lay_trail(std::span<const std::uint32_t> layout, std::vector<double>& trail) {
   for (double& strength : trail) strength *= 1 - kEvaporation;

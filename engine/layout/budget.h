@@ -1,4 +1,4 @@
-// How long an anytime solver searches.
+// The time limit of an anytime layout solver.
 #pragma once
 
 #include <chrono>
@@ -8,6 +8,7 @@
 
 namespace triglyph {
 
+// Counts from its construction, by passes or by the clock as the options say.
 class Budget {
  public:
   explicit Budget(const LayoutOptions& options) : options_(options), start_(Clock::now()) {}
@@ -17,7 +18,7 @@ class Budget {
     return std::chrono::duration<double>(Clock::now() - start_).count();
   }
 
-  // May the solver go on after `done` passes over the candidates?
+  // Returns whether the solver may continue after `done` passes over the candidates.
   [[nodiscard]] bool allows(std::uint64_t done) const {
     return is_timed() ? elapsed_seconds() < options_.seconds : done < options_.iterations;
   }

@@ -8,7 +8,7 @@
 namespace triglyph {
 namespace {
 
-constexpr std::uint32_t kNowhere = 0xffffffff;
+constexpr std::uint32_t kNoIndex = 0xffffffff;
 
 }  // namespace
 
@@ -31,21 +31,20 @@ GraphBlocks::GraphBlocks(const ConflictGraph& graph, std::uint32_t size, std::ui
     : interior_(graph.size(), 1) {
   const std::uint32_t count = graph.size();
   units_.reserve(count);
-  std::vector<std::uint32_t> block_of(count, kNowhere);
+  std::vector<std::uint32_t> block_of(count, kNoIndex);
   const auto start = static_cast<std::uint32_t>(count == 0 ? 0 : random_bits(seed, 0, 0) % count);
-  // units_ is the queue: a block's tail waits until the block is full, then the next one begins
-  // beside it
+  // units_ is the queue of the breadth-first search; a full block is followed by one beside it
   for (std::uint32_t i = 0; i < count; ++i) {
     std::uint32_t root = (start + i) % count;
-    while (root != kNowhere && block_of[root] == kNowhere) {
+    while (root != kNoIndex && block_of[root] == kNoIndex) {
       const auto block = static_cast<std::uint32_t>(this->size());
       const std::size_t first = units_.size();
       block_of[root] = block;
       units_.push_back(root);
-      std::uint32_t beside = kNowhere;
+      std::uint32_t beside = kNoIndex;
       for (std::size_t next = first; next < units_.size(); ++next) {
         for (const std::uint32_t other : graph.neighbours(units_[next])) {
-          if (block_of[other] != kNowhere) continue;
+          if (block_of[other] != kNoIndex) continue;
           if (units_.size() - first == size) {
             beside = other;
             break;

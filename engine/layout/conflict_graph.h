@@ -1,4 +1,4 @@
-// The conflict graph written out, for solvers that visit the same neighbours many times.
+// The explicit conflict graph, for solvers that visit the same neighbours many times.
 #pragma once
 
 #include <cstddef>
@@ -12,14 +12,15 @@ namespace triglyph {
 
 class ConflictGraph {
  public:
-  // Parallel. O(sum of degrees) time and memory: 4 bytes an edge end.
+  // Lists the neighbours of every unit. O(sum of degrees) time and memory, 8 bytes per edge;
+  // parallel.
   explicit ConflictGraph(const Conflicts& conflicts);
 
   [[nodiscard]] std::uint32_t size() const {
     return static_cast<std::uint32_t>(offsets_.size() - 1);
   }
 
-  // Units that interfere with `unit`, ascending, each once.
+  // Returns the units that interfere with `unit`, ascending, without duplicates.
   [[nodiscard]] std::span<const std::uint32_t> neighbours(std::uint32_t unit) const {
     return {neighbours_.data() + offsets_[unit], neighbours_.data() + offsets_[unit + 1]};
   }
@@ -29,8 +30,8 @@ class ConflictGraph {
   std::vector<std::uint32_t> neighbours_;
 };
 
-// Cuts the units into blocks that can be searched at the same time: connected pieces of at most
-// `size` units, grown breadth first from a place that the seed chooses.
+// A partition of the units into blocks that can be searched in parallel. Blocks are connected, have
+// at most `size` units, and are grown breadth first from a start that the seed selects.
 class GraphBlocks {
  public:
   GraphBlocks() = default;
@@ -43,7 +44,7 @@ class GraphBlocks {
     return {units_.data() + offsets_[block], units_.data() + offsets_[block + 1]};
   }
 
-  // All neighbours are in the unit's own block.
+  // Returns whether all neighbours are in the unit's own block.
   [[nodiscard]] bool is_interior(std::uint32_t unit) const { return interior_[unit] != 0; }
 
  private:

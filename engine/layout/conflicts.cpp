@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::array<std::string_view, 2> kNames = {"read-write", "shared-point"};
 
-// The units on each point, ascending.
+// Returns the lists of the units at each point, ascending.
 PointLists transpose(const PointLists& lists, std::size_t points) {
   PointLists result;
   result.offsets.assign(points + 1, 0);

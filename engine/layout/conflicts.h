@@ -1,5 +1,6 @@
-// Which candidates interfere. The conflict graph stays implicit: a candidate's neighbours are found
-// through the points it shares with them, so memory is linear in the candidates' sizes.
+// Conflicts between candidates. The conflict graph stays implicit: a candidate's neighbours are
+// found through the points that it shares with them, so memory is linear in the sizes of the
+// candidates.
 #pragma once
 
 #include <cstdint>
@@ -12,31 +13,32 @@
 namespace triglyph {
 
 enum class ConflictRule {
-  ReadWrite,    // one may not move what the other reads; exact, and leaves room for more units
-  SharedPoint,  // the paper's: no point in common, moved or read
+  ReadWrite,    // neither moves a point that the other reads: exact, so more units fit
+  SharedPoint,  // no point in common, moved or read: the paper's rule
 };
 
-// Names by ConflictRule: "read-write", "shared-point".
+// Returns the names in the order of ConflictRule: "read-write", "shared-point".
 [[nodiscard]] std::span<const std::string_view> conflict_names();
 [[nodiscard]] std::string_view name_of(ConflictRule rule);
 
 class Conflicts {
  public:
-  // `moved` and `read`: points that each candidate may move, and those that its invariants depend
-  // on, which contain the former; they may be one object, and both must outlive the conflicts.
-  // O(total size of the lists).
+  // `moved` lists the points that each candidate may move, `read` those that its invariants depend
+  // on, which include the former. They may be the same object; both must outlive the conflicts.
+  // `points` is the number of points of the mesh. O(points + total size of the lists).
   Conflicts(const PointLists& moved, const PointLists& read, std::size_t points, ConflictRule rule);
 
   [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(moved_->size()); }
   [[nodiscard]] std::size_t points() const { return movers_.size(); }
 
-  // Points that unit i alone may occupy: what it moves (ReadWrite) or reads (SharedPoint).
+  // Returns the points that no other chosen unit may move: those that the unit moves (ReadWrite),
+  // or reads (SharedPoint).
   [[nodiscard]] std::span<const std::uint32_t> moved(std::uint32_t unit) const {
     return (*moved_)[unit];
   }
 
-  // Calls visit(j) for every unit j that interferes with `unit`; some more than once, and `unit`
-  // itself too.
+  // Calls visit(j) for every unit j that interferes with `unit`, possibly several times, and for
+  // `unit` itself.
   template <typename Visit>
   void for_each_neighbour(std::uint32_t unit, const Visit& visit) const {
     for (const std::uint32_t point : (*moved_)[unit]) {
@@ -53,8 +55,8 @@ class Conflicts {
 
   const PointLists* moved_;
   const PointLists* read_;
-  PointLists movers_;   // units that move a point
-  PointLists readers_;  // units that read a point; empty if the same
+  PointLists movers_;   // of each point, the units that move it
+  PointLists readers_;  // of each point, the units that read it; empty if these are the same
 };
 
 }  // namespace triglyph

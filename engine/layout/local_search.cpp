@@ -2,13 +2,14 @@
 // Andrade, Resende, Werneck. Fast local search for the maximum independent set problem. Journal of
 // Heuristics 18 (2012): swaps among units with a single blocker.
 // Kirkpatrick, Gelatt, Vecchi. Optimization by simulated annealing. Science 220 (1983).
-// 1. Instead of looking for (1,2)-swaps we walk at random along (1,1)-swaps and take every unit
-//    that comes free; now and then a unit takes the place of two, at a rate that falls with the
-//    temperature. On mesh units, where good solutions are many and close together, that finds more.
-// 2. Blocks of the graph are searched at the same time, each by its own random numbers; what lies
-// at
-//    a block's border rests until the next round, which cuts the graph elsewhere. So the result is
-//    the same for any number of threads.
+// Deviations:
+//  1. Instead of looking for (1,2)-swaps, the search walks at random along (1,1)-swaps and takes
+//     every unit that becomes free. Occasionally a unit replaces two, at a rate that falls with the
+//     temperature. On mesh units, whose good solutions are many and close together, this finds
+//     more.
+//  2. Blocks of the graph are searched in parallel, each with its own random numbers. Units at the
+//     border of a block stay fixed until the next round, which cuts the graph elsewhere. The result
+//     is therefore the same for any number of threads.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -22,19 +23,22 @@
 namespace triglyph {
 namespace {
 
-constexpr double kHot = 0.105;   // share of a unit: about one step in ten thousand goes uphill
-constexpr double kCold = 0.055;  // next to none does
-constexpr int kRounds = 192;
-constexpr std::size_t kCuts = 8;  // ways to cut the graph into blocks, in turn; fewer cost units
+// Temperatures of the first and the last round, in units lost: about one step in ten thousand loses
+// a unit, then hardly any.
+constexpr double kHot = 0.105;
+constexpr double kCold = 0.055;
+constexpr int kRounds = 192;      // of cooling; borders of blocks move between them
+constexpr std::size_t kCuts = 8;  // partitions into blocks, used in turn; fewer find fewer units
+// Units in a block: few enough that a search fits a core's own cache, enough that borders are few.
 constexpr std::uint32_t kLeastBlock = 4096;
-constexpr std::uint32_t kMostBlock = 8192;  // what a search looks at fits a core's own cache
+constexpr std::uint32_t kMostBlock = 8192;
 
 struct Site {
-  std::uint32_t blocker_sum = 0;  // of the chosen neighbours' numbers: with one, the blocker itself
+  std::uint32_t blocker_sum = 0;  // sum of the chosen neighbours' indices; with one, its index
   std::uint32_t place = 0;        // in the walker's list of swaps
-  std::uint32_t blockers = 0;     // chosen neighbours
+  std::uint32_t blockers = 0;     // number of chosen neighbours
   bool is_chosen = false;
-  bool is_movable = false;  // in this round
+  bool is_movable = false;  // interior to its block in this round
 };
 
 struct Solution {
@@ -42,7 +46,7 @@ struct Solution {
   std::vector<Site> sites;
 };
 
-// One block's search in one round. Touches the sites of its own block only.
+// The search of one block in one round. Changes only sites of its own block.
 class Walker {
  public:
   Walker(Solution& solution, std::span<const std::uint32_t> block, std::uint64_t stream)
@@ -83,7 +87,8 @@ class Walker {
     insert(unit);
   }
 
-  // Takes the place of two units. The walk proposes that at the rate of a loss of one unit.
+  // Replaces two units by one. The walk proposes this at the rate at which a loss of one unit is
+  // accepted at its temperature.
   void climb(std::uint32_t unit) {
     if (sites_[unit].blockers != 2 || sites_[unit].is_chosen) return;
     std::array<std::uint32_t, 2> blockers{};
@@ -97,7 +102,7 @@ class Walker {
     insert(unit);
   }
 
-  // Takes every unit that nothing blocks any more.
+  // Adds every unit that has no chosen neighbour any more.
   void fill() {
     while (!free_.empty()) {
       const std::size_t at = free_.size() == 1 ? 0 : random() % free_.size();
@@ -154,15 +159,15 @@ class Walker {
   std::uint64_t drawn_ = 0;
   std::vector<std::uint32_t> movable_;
   std::vector<std::uint32_t> swaps_;  // movable, with one blocker
-  std::vector<std::uint32_t> free_;   // may be out of date
+  std::vector<std::uint32_t> free_;   // superset of those without a chosen neighbour
 };
 
-// Steps a unit each round takes: an even share of a given number, or what the clock allows.
+// The number of steps per unit in each round: an even share of the iterations, or of the time left.
 class Pace {
  public:
   explicit Pace(const LayoutOptions& options) : options_(options), budget_(options) {}
 
-  // 0: time is up.
+  // Returns 0 if the time is up.
   [[nodiscard]] double steps_of_round(int round) {
     if (!budget_.is_timed()) return static_cast<double>(options_.iterations) / kRounds;
     const double elapsed = budget_.elapsed_seconds();
@@ -196,8 +201,8 @@ class Search {
         solution_{graph, std::vector<Site>(graph.size())},
         cuts_(cut_graph(graph, options.seed)) {}
 
-  // Without moving what stands, takes every unit that nothing blocks; keeps the result if it is the
-  // best so far.
+  // Adds, in this order, every unit without a chosen neighbour; keeps the result if it is the best
+  // so far.
   void complete(std::span<const std::uint32_t> order) {
     for (const std::uint32_t unit : order) {
       Site& site = solution_.sites[unit];

@@ -1,4 +1,4 @@
-// Orders of the units, drawn by chance: what randomised greedy solvers are made of.
+// Random orders of the units, for randomised greedy solvers.
 #pragma once
 
 #include <cstdint>
@@ -9,18 +9,18 @@
 
 namespace triglyph {
 
-// Units that interfere with each unit, a neighbour counting once for every shared point.
-// O(sum of degrees).
+// Returns the degree of every unit; a neighbour counts once for every shared point, and so does the
+// unit itself. O(sum of degrees), parallel.
 [[nodiscard]] std::vector<std::uint32_t> degrees_of(const Conflicts& conflicts);
 
-// Takes the units in this order, each if it interferes with none taken before. Ascending result.
-// O(sum of degrees).
+// Returns the units, ascending, that a first fit takes in this order: each that does not interfere
+// with one taken before. O(sum of degrees).
 [[nodiscard]] std::vector<std::uint32_t> fit_in_order(const Conflicts& conflicts,
                                                       std::span<const std::uint32_t> order);
 
-// Draws the units without replacement, each with a chance proportional to its attraction among
-// those that are left; so taking them in order is a greedy construction that draws its next unit
-// among the free ones. `attraction` > 0. O(n log n).
+// Returns a random order of the units: each is drawn without replacement, with a probability
+// proportional to its attraction among those that are left. A first fit in this order is therefore
+// a randomised greedy construction. Precondition: every attraction is > 0. O(n log n).
 // Efraimidis, Spirakis. Weighted random sampling with a reservoir. Information Processing Letters
 // 97 (2006): sorting by exponential keys.
 [[nodiscard]] std::vector<std::uint32_t> draw_order(std::span<const double> attraction,
