@@ -1,4 +1,4 @@
-// All measures of two meshes by name.
+// The metrics by name: all measures of the difference between two meshes.
 #pragma once
 
 #include <span>
@@ -16,17 +16,19 @@ struct NamedValue {
   double value = 0;
 };
 
-// "hausdorff", "displacement", "metro", "mrms", "msdm", "msdm2", "roughness", "strain", "normal",
-// "snr"; each header says what they are.
+// Returns "hausdorff", "displacement", "metro", "mrms", "msdm", "msdm2", "roughness", "strain",
+// "normal", "snr". The headers of this folder define them.
 [[nodiscard]] std::span<const std::string_view> metric_names();
 
-// Does it need two positions of the same triangles?
+// Returns whether a metric compares two positions of the same triangles.
 [[nodiscard]] bool needs_same_triangles(std::string_view metric);
+
+// Returns whether the meshes have as many points and equal triangles. O(triangles).
 [[nodiscard]] bool have_same_triangles(const Mesh& first, const Mesh& second);
 
-// What a metric says of two meshes, distances in model units. `hausdorff_tolerance` is a share of
-// the diagonal of the first mesh's box. Throws Error Usage for an unknown name, for a mesh without
-// faces, and for a metric that needs the same triangles where they are not.
+// Returns the values of a metric, distances in model units. `hausdorff_tolerance` is a share of the
+// diagonal of the first mesh's bounding box. Throws Error Usage for an unknown metric, for a mesh
+// without faces, and if the metric needs the same triangles and the meshes differ in them.
 [[nodiscard]] std::vector<NamedValue> compare(const Mesh& first, const Mesh& second,
                                               std::string_view metric,
                                               double hausdorff_tolerance = kHausdorffTolerance);

@@ -15,7 +15,7 @@ Vec3 normal_of(const Mesh& mesh, std::uint32_t face) {
   return area_normal(mesh.positions, mesh.triangles[face]);
 }
 
-// Signed angles between the faces of every edge, > 0 where convex; radians.
+// Returns the signed dihedral angle of every edge in radians, > 0 if the edge is convex.
 std::vector<double> dihedral_angles(const Mesh& mesh, const EdgeGraph& graph) {
   std::vector<double> angles(graph.edges.size(), 0);
   parallel_for(
@@ -38,7 +38,7 @@ double mean_of_principal(const SymmetricMatrix& tensor) {
   std::array<double, 3> sizes = tensor.principal_axes().values;
   for (double& size : sizes) size = std::abs(size);
   std::sort(sizes.begin(), sizes.end());
-  return (sizes[1] + sizes[2]) / 2;  // the least belongs to the normal
+  return (sizes[1] + sizes[2]) / 2;  // the least eigenvalue is that of the normal
 }
 
 }  // namespace

@@ -39,9 +39,9 @@ Metric metric_of(const Sides& sides) {
   return {dot(sides.a, sides.a), dot(sides.a, sides.b), dot(sides.b, sides.b)};
 }
 
-// Energy of the strain from one metric to another times the area of the first. The stretches s, t
-// are singular values of the map: s^2 + t^2 and s^2 t^2 are the trace and the determinant of
-// from^-1 to, in any basis.
+// Returns the strain energy density from one metric to another, times the area of the first. The
+// stretches s and t are the singular values of the map: s^2 + t^2 and s^2 t^2 are the trace and the
+// determinant of from^-1 to, in any basis.
 double strain_energy(const Metric& from, const Metric& to) {
   const double determinant = from.determinant();
   if (!(determinant > 0)) return 0;
@@ -52,7 +52,7 @@ double strain_energy(const Metric& from, const Metric& to) {
   return std::sqrt(determinant) / 2 * squares / 2;
 }
 
-// An angle and what it weighs, folded into a maximum and sums.
+// The maximum and the weighted sums of angles.
 struct Angles {
   double max = 0, sum = 0, weight = 0;
 };

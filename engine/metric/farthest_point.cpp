@@ -24,15 +24,15 @@ struct Corner {
   std::uint32_t nearest = kNoTriangle;
 };
 
-// A triangle of the surface or a part of one.
+// A triangle of the surface, or a part of one.
 struct Piece {
   std::array<Corner, 3> corners;
-  std::uint32_t middle = kNoTriangle;  // nearest to the middle of the triangle it is a part of
-  double upper = kInfinity;            // no point of it is farther
+  std::uint32_t middle = kNoTriangle;  // nearest to the middle of the whole triangle
+  double upper = kInfinity;            // upper bound of the distance on the piece
   std::uint64_t number = 0;            // breaks ties
   int depth = 0;
 
-  // the order of a heap whose top is the piece that may hold the farthest point
+  // the order of a heap whose top has the greatest bound
   bool operator<(const Piece& other) const {
     return upper != other.upper ? upper < other.upper : number > other.number;
   }
@@ -51,14 +51,15 @@ double greatest(const Column& column) {
   return std::max({column[0], column[1], column[2]});
 }
 
-// The greatest entry of share * a + (1 - share) * b.
+// Returns the greatest entry of share * a + (1 - share) * b.
 double greatest_of_mix(const Column& a, const Column& b, double share) {
   Column mix{};
   for (std::size_t i = 0; i < 3; ++i) mix[i] = share * a[i] + (1 - share) * b[i];
   return greatest(mix);
 }
 
-// The least of greatest_of_mix over all shares: at an end, or where two of the three lines cross.
+// Returns the least greatest_of_mix() over all shares: at an end, or where two of three lines
+// cross.
 double least_mix(const Column& a, const Column& b) {
   double least = std::min(greatest(a), greatest(b));
   for (std::size_t i = 0; i < 3; ++i) {
@@ -70,8 +71,8 @@ double least_mix(const Column& a, const Column& b) {
   return least;
 }
 
-// The greatest entry of the mix of three columns whose entries are equal, by Cramer's rule;
-// infinity if its weights are not all positive.
+// Returns the entry of the mean of three columns whose entries are all equal, by Cramer's rule;
+// infinity if the weights of that mean are not all positive.
 double level_mix(const Column& a, const Column& b, const Column& c) {
   const auto minor = [](const Column& p, const Column& q) {
     return (p[0] * q[1] - p[1] * q[0]) + (p[1] * q[2] - p[2] * q[1]) + (p[2] * q[0] - p[0] * q[2]);
@@ -120,7 +121,7 @@ class BranchAndBound {
     if (corner.distance > best_.distance) best_ = {corner.distance, 0, corner.point};
   }
 
-  // Turns triangles into pieces, those that may reach farthest first.
+  // Turns triangles into pieces, in descending order of their bounds.
   void open_triangles() {
     std::vector<std::uint32_t> order(triangles_.size());
     std::iota(order.begin(), order.end(), 0U);
@@ -157,7 +158,7 @@ class BranchAndBound {
     for (Piece& piece : opened) keep(piece);
   }
 
-  // Finds what is nearest to the middle of a piece, and bounds the piece with it.
+  // Finds the triangle nearest to the middle of a piece, and bounds the piece with it.
   [[nodiscard]] Corner look_at_middle(Piece& piece) const {
     const auto& [a, b, c] = piece.corners;
     Corner middle;
@@ -170,14 +171,14 @@ class BranchAndBound {
     return middle;
   }
 
-  // Distances of the corners that have none yet.
+  // Computes the distances of the corners that have none yet.
   void evaluate_corners(std::span<const std::uint32_t> round) {
     std::vector<std::pair<std::uint32_t, double>> wanted;
     for (const std::uint32_t t : round) {
       for (const std::uint32_t point : triangles_[t]) {
         if (corners_[point].nearest != kNoTriangle) continue;
         wanted.emplace_back(point, reach_[t]);
-        corners_[point].nearest = 0;  // wanted once
+        corners_[point].nearest = 0;  // queued
       }
     }
     parallel_blocks(
@@ -199,7 +200,7 @@ class BranchAndBound {
     for (const auto& [point, reach] : wanted) try_point(corners_[point]);
   }
 
-  // Precondition: the surface is no farther than reach, up to rounding.
+  // Computes the distance of a corner. Precondition: it is at most `reach`, up to rounding.
   void evaluate(Corner& corner, double reach) const {
     ClosestPoint found = surface_.closest(corner.point, reach);
     if (found.triangle == kNoTriangle) found = surface_.closest(corner.point, kInfinity);
@@ -207,7 +208,7 @@ class BranchAndBound {
     corner.nearest = found.triangle;
   }
 
-  // Of a piece whose corners' distances are known.
+  // Returns an upper bound on a piece. Precondition: the distances of its corners are known.
   [[nodiscard]] double bound_of(const Piece& piece) const {
     const auto& [a, b, c] = piece.corners;
     if (a.nearest == b.nearest && b.nearest == c.nearest) {
@@ -231,7 +232,7 @@ class BranchAndBound {
     return least_greatest_mean({columns.data(), count});
   }
 
-  // Puts a piece on the list if it may hold the farthest point.
+  // Adds a piece to the heap if its bound exceeds the distance found.
   bool keep(Piece& piece) {
     if (!is_open(piece.upper)) {
       close(piece.upper);
@@ -242,7 +243,7 @@ class BranchAndBound {
     return true;
   }
 
-  // Splits the pieces with the greatest bounds. Returns how many.
+  // Splits the pieces with the greatest bounds. Returns their number.
   std::size_t split_farthest_pieces() {
     std::vector<Piece> round;
     while (!pieces_.empty() && is_open(pieces_.front().upper) && round.size() < kPiecesPerRound) {
@@ -266,8 +267,9 @@ class BranchAndBound {
     return round.size();
   }
 
-  // By turns where the nearest triangle ends and at the longest edge. The former cuts surfaces that
-  // lie in one plane into pieces under one triangle each; the latter lets every piece shrink.
+  // Splits a piece, alternately where the prism of the nearest triangle ends and at the longest
+  // edge. The former cuts coplanar surfaces into pieces under one triangle each; the latter makes
+  // every piece shrink.
   [[nodiscard]] Parts split(const Piece& piece) const {
     Parts parts;
     if (piece.depth % 2 == 0) parts = cut_where_nearest_ends(piece);
@@ -280,7 +282,7 @@ class BranchAndBound {
     return parts;
   }
 
-  // Between two corners, their share of the way from a to b.
+  // Returns the corner at a share of the way from a to b.
   [[nodiscard]] Corner corner_between(const Corner& a, const Corner& b, double share) const {
     Corner middle;
     middle.point = a.point + (b.point - a.point) * share;
@@ -310,10 +312,10 @@ class BranchAndBound {
     return parts;
   }
 
-  // At a plane that bounds the prism over the triangle nearest to a corner, if one runs through
-  // the piece; nothing if none does.
+  // Cuts a piece at a side plane of the prism over the triangle nearest to one of its corners.
+  // Returns nothing if no such plane intersects the piece.
   [[nodiscard]] Parts cut_where_nearest_ends(const Piece& piece) const {
-    Column heights{};  // of the corners over the plane
+    Column heights{};  // of the corners above the plane
     double deepest = 1e-9 * std::max((piece.corners[1].point - piece.corners[0].point).norm(),
                                      (piece.corners[2].point - piece.corners[0].point).norm());
     bool found = false;
@@ -338,11 +340,12 @@ class BranchAndBound {
     return heights;
   }
 
-  // Where the heights, linear on the piece, are zero. Precondition: some are above, some below.
+  // Cuts a piece where the heights, linear on it, are zero. Precondition: some are > 0 and some <
+  // 0.
   [[nodiscard]] Parts cut(const Piece& piece, const Column& heights) const {
     const int above = static_cast<int>(
         std::count_if(heights.begin(), heights.end(), [](double height) { return height > 0; }));
-    std::size_t tip = 0;  // the corner that is alone on its side
+    std::size_t tip = 0;  // the corner on the other side from the other two
     for (std::size_t i = 0; i < 3; ++i) {
       if ((heights[i] > 0) == (above == 1)) tip = i;
     }
@@ -370,7 +373,7 @@ class BranchAndBound {
   std::vector<Piece> pieces_;    // a heap once the triangles are opened
   std::uint64_t numbered_ = 0;
   FarthestPoint best_;
-  double closed_ = 0;  // the greatest bound of what was not looked into
+  double closed_ = 0;  // the greatest bound of pieces that were dropped
 };
 
 }  // namespace

@@ -1,12 +1,12 @@
-// The point of one surface that is farthest from another, with proof: branch and bound over
-// triangles.
+// The point of one surface that is farthest from another, with a certified error: branch and bound
+// over triangles.
 //
-// The distance to a triangle is a convex function, and so is any weighted mean of distances to
-// several triangles, which is never below the least of them. So on a piece of the surface the
-// distance is nowhere greater than the greatest such mean at the piece's corners, whatever the
-// weights. The triangles are those nearest to the corners and to the middle; the best weights solve
-// a matrix game. A piece that crosses from one nearest triangle to the next is thus bounded to
-// second order of its size.
+// The distance to a triangle is a convex function of the point, and so is a weighted mean of the
+// distances to several triangles, which is never below the least of them. On a piece of the
+// surface, the distance to the other surface is therefore at most the greatest value of such a mean
+// at the corners of the piece, for any weights. The bound uses the triangles nearest to the corners
+// and to the middle; the best weights solve a matrix game. On a piece that spans two nearest
+// triangles, the bound is then accurate to second order in the size of the piece.
 //
 // This work is based on:
 // Tang, Lee, Kim. Interactive Hausdorff distance computation for general polygonal models.
@@ -22,8 +22,8 @@
 
 namespace triglyph {
 
-// The farthest point found, and how much farther any other can be: the true distance lies in
-// [distance, distance + error], up to rounding of coordinates. Model units.
+// The farthest point found, and a bound on how much farther any other can be: the true distance
+// lies in [distance, distance + error], up to the rounding of coordinates. Model units.
 struct FarthestPoint {
   double distance = 0;
   double error = 0;
@@ -31,24 +31,25 @@ struct FarthestPoint {
 };
 
 struct FarthestQuery {
-  // Stop as soon as the error is no greater; model units, > 0 unless the distance is attained at
-  // corners. Met unless the splits run out.
+  // The error at which the search stops; model units, > 0 unless the distance is attained at a
+  // corner. It is reached unless `most_splits` stops the search first.
   double tolerance = 0;
-  // So many pieces are split at most, which bounds time and memory.
+  // The number of pieces that are split at most, which bounds time and memory.
   std::size_t most_splits = std::size_t{1} << 22;
 };
 
-// `surface`: index of the triangles `there` of the other surface, of which there is at least one.
-// `reach`: known bounds of the distance, one a triangle of `here`; infinity where there is none.
-// Bitwise the same for any number of threads. O(t log t) for t triangles that reach far, and more
-// the longer the lines are along which the distance is greatest and the nearest place changes.
+// Returns the point of the triangles `here` that is farthest from `surface`, the index of the other
+// surface, which has at least one triangle. `reach` holds a known upper bound of the distance for
+// every triangle of `here`, or infinity. The result is bitwise equal for any number of threads. O(t
+// log t) for t triangles whose bound is large; more if the distance is near its maximum along long
+// lines on which the nearest triangle changes.
 [[nodiscard]] FarthestPoint farthest_point(std::span<const Vec3> positions,
                                            std::span<const Triangle> here,
                                            std::span<const double> reach,
                                            const SpatialIndex& surface, const FarthestQuery& query);
 
-// The least, over weighted means of the columns, of a mean's greatest entry: the value of a matrix
-// game. Precondition: at least one column. O(columns^3).
+// Returns the least value, over all weighted means of the columns, of the greatest entry of the
+// mean: the value of a matrix game. Precondition: at least one column. O(columns^3).
 [[nodiscard]] double least_greatest_mean(std::span<const std::array<double, 3>> columns);
 
 }  // namespace triglyph

@@ -15,7 +15,8 @@
 namespace triglyph {
 namespace {
 
-// A point of a triangle is at most as far from its own new place as the triangle's corners are.
+// Returns an upper bound of the distance for every triangle: no point of it moves farther than the
+// corners do.
 std::vector<double> reach_of_moves(std::span<const Triangle> moved, std::span<const Vec3> before,
                                    std::span<const Vec3> after) {
   std::vector<double> reach(moved.size());

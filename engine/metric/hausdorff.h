@@ -1,5 +1,5 @@
-// How far two surfaces are from each other, certified: every distance comes with a bound of its
-// error. Embree prunes, double decides.
+// The Hausdorff distance of two surfaces with a certified error. Embree prunes in single precision;
+// distances are computed and compared in double precision.
 #pragma once
 
 #include <span>
@@ -11,28 +11,30 @@ namespace triglyph {
 
 // All in model units.
 struct HausdorffDistance {
-  FarthestPoint forward;   // the first surface's farthest point from the second
-  FarthestPoint backward;  // and the other way round
+  FarthestPoint forward;   // the point of the first surface that is farthest from the second
+  FarthestPoint backward;  // the point of the second surface that is farthest from the first
 
   [[nodiscard]] double symmetric() const {
     return forward.distance > backward.distance ? forward.distance : backward.distance;
   }
-  // The true symmetric distance is at most symmetric() + error().
+  // Returns the error: the true symmetric distance lies in [symmetric(), symmetric() + error()].
   [[nodiscard]] double error() const;
 };
 
-// A usual tolerance, as a share of the diagonal of the first mesh's box.
+// The default tolerance, as a share of the diagonal of the first mesh's bounding box: far below any
+// distance that a mark makes.
 inline constexpr double kHausdorffTolerance = 1e-6;
 
-// Between two positions of the same triangles, with an error of at most `tolerance` (model units,
-// > 0) each way. Triangles that did not move count nothing; one that moved is no farther than its
-// corners' moves. Precondition: equal sizes. O(m log t) for m triangles that moved.
+// Returns the distance between two positions of the same triangles, with an error of at most
+// `tolerance` (model units, > 0) in each direction. Only triangles that moved are searched; none of
+// them is farther away than its corners moved. Precondition: equal sizes. O(m log t) for m
+// triangles that moved.
 [[nodiscard]] HausdorffDistance hausdorff_of_move(std::span<const Triangle> triangles,
                                                   std::span<const Vec3> before,
                                                   std::span<const Vec3> after, double tolerance);
 
-// Between any two meshes; a point no triangle uses does not count. Throws Error Usage if either has
-// no triangles. O((s + t) log (s + t)).
+// Returns the distance between any two meshes, likewise. Points without triangles do not count.
+// Throws Error Usage if either mesh has no triangles. O((s + t) log (s + t)).
 [[nodiscard]] HausdorffDistance hausdorff(const Mesh& first, const Mesh& second, double tolerance);
 
 }  // namespace triglyph

@@ -12,9 +12,10 @@
 namespace triglyph {
 namespace {
 
-constexpr double kCellsAcross = 16;  // of the largest box, at most
+constexpr double kCellsAcross = 16;  // most cells along a side of the largest box: bounds the work
 
-// Around a triangle before and after, widened by the farthest move of its corners.
+// Returns the bounding box of a triangle before and after, widened by the greatest move of its
+// corners.
 Box swept_box(const Triangle& triangle, std::span<const Vec3> before, std::span<const Vec3> after) {
   Box box;
   double reach_squared = 0;
@@ -29,11 +30,11 @@ Box swept_box(const Triangle& triangle, std::span<const Vec3> before, std::span<
   return box;
 }
 
-// The cells of a grid that some boxes touch, as bits addressed by a hash of the cell: another cell
-// may be taken for a touched one, which keeps a triangle too many and never one too few.
+// The set of grid cells that boxes touch, as a hashed bit set. A collision makes a cell look
+// touched, which can keep a triangle too many but never loses one.
 class TouchedCells {
  public:
-  // Room for so many calls of touch() with boxes about as wide as a cell.
+  // Reserves room for `boxes` calls of touch() with boxes about as wide as a cell.
   TouchedCells(const Vec3& origin, double cell, std::size_t boxes)
       : origin_(origin),
         cell_(cell),
@@ -51,19 +52,20 @@ class TouchedCells {
     const Cells cells = cells_of(box);
     double count = 1;
     for (std::size_t axis = 0; axis < 3; ++axis) count *= cells.high[axis] - cells.low[axis] + 1;
-    if (!(count <= kMostCells)) return true;  // a triangle as large as that is kept unseen
+    if (!(count <= kMostCells))
+      return true;  // a triangle this large is kept without a look at its cells
     return visit_slots(
         cells, [&](std::size_t slot) { return ((bits_[slot / 64] >> (slot % 64)) & 1) != 0; });
   }
 
  private:
-  static constexpr std::size_t kSlotsPerBox = 1024;  // few triangles are kept by mistake
+  static constexpr std::size_t kSlotsPerBox = 1024;  // enough that collisions are rare
   static constexpr std::size_t kFewestSlots = std::size_t{1} << 16;
   static constexpr std::size_t kMostSlots = std::size_t{1} << 26;
   static constexpr double kMostCells = 1000;
 
   struct Cells {
-    std::array<double, 3> low{}, high{};  // whole numbers
+    std::array<double, 3> low{}, high{};  // cell coordinates, integers
   };
 
   [[nodiscard]] Cells cells_of(const Box& box) const {
@@ -75,7 +77,7 @@ class TouchedCells {
     return cells;
   }
 
-  // Visits the slots of some cells until one says true.
+  // Visits the slots of a range of cells until `visit` returns true.
   template <typename Visit>
   bool visit_slots(const Cells& cells, const Visit& visit) const {
     for (auto x = whole(cells.low[0]); x <= whole(cells.high[0]); ++x) {
@@ -121,11 +123,11 @@ std::vector<Triangle> nearby_triangles(std::span<const Triangle> triangles,
     largest = std::max(largest, width);
     sum += width;
   }
-  // beyond this, cell numbers would not be exact
+  // beyond this, cell coordinates would not be exact
   if (!(largest > 0 && around.size().max() < 1e12 * largest)) {
     return {triangles.begin(), triangles.end()};
   }
-  // as wide as most boxes, and not so narrow that the largest touches too many
+  // as wide as the average box, but not so narrow that the largest box touches too many cells
   const double cell = std::max(sum / static_cast<double>(moved.size()), largest / kCellsAcross);
   TouchedCells touched(around.low, cell, moved.size());
   for (const Box& box : boxes) touched.touch(box);

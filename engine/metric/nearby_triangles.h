@@ -1,4 +1,5 @@
-// The part of a surface that a small change can be near to: what a distance query needs to look at.
+// The part of a surface that can be nearest to a moved triangle, to which distance queries are
+// limited.
 #pragma once
 
 #include <span>
@@ -8,9 +9,10 @@
 
 namespace triglyph {
 
-// A superset, in order, of the triangles that come within reach of a moved triangle, before or
-// after; a moved triangle's reach is the farthest move of its corners. The moved triangles
-// themselves are in it. O(triangles) with a grid of cells the size of the moved triangles.
+// Returns a superset, in input order, of the triangles that come within reach of a moved triangle
+// before or after the move; the reach of a moved triangle is the greatest distance that its corners
+// moved. The moved triangles themselves are included. O(triangles), with a grid whose cells are
+// about as wide as the moved triangles.
 [[nodiscard]] std::vector<Triangle> nearby_triangles(std::span<const Triangle> triangles,
                                                      std::span<const Triangle> moved,
                                                      std::span<const Vec3> before,

@@ -14,7 +14,7 @@
 namespace triglyph {
 namespace {
 
-// Faces as roughness sees them.
+// The properties of faces that roughness depends on.
 struct Faces {
   std::vector<double> areas;
   std::vector<double> bends;  // mean of 1 - cos of the angles to the neighbours
@@ -47,7 +47,7 @@ Faces faces_of(const Mesh& mesh) {
   return faces;
 }
 
-// The faces that have a point in common with these, these among them; ascending.
+// Returns the faces that share a point with these, including these, ascending.
 std::vector<std::uint32_t> one_ring_more(const Mesh& mesh, const Faces& faces,
                                          std::span<const std::uint32_t> ring) {
   std::vector<std::uint32_t> wider;
@@ -62,7 +62,7 @@ std::vector<std::uint32_t> one_ring_more(const Mesh& mesh, const Faces& faces,
   return wider;
 }
 
-// Mean times variance of the bends, a unit of area.
+// Returns the mean times the variance of the bends, per unit of area.
 double roughness_of(const Faces& faces, std::span<const std::uint32_t> ring) {
   double area = 0, sum = 0, squares = 0;
   for (const std::uint32_t face : ring) {

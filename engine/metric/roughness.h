@@ -1,21 +1,22 @@
-// How rough a surface is, and how much rougher a mark made it.
+// Multiscale roughness of a surface, and its increase by a mark.
 #pragma once
 
 #include "engine/mesh/mesh.h"
 
 namespace triglyph {
 
-// Multiscale roughness, dimensionless, 0 where flat. At a face, 1 - cos of the dihedral angles is
-// averaged over its neighbours; at a point, mean times variance of that over the faces within one
-// and within two rings, a unit of their area, whichever is greater; a face takes the mean of its
-// points, and the whole is the sum over faces times their areas. O(faces * faces in two rings).
-// In the manner of Corsini, Gelasca, Ebrahimi, Barni, Watermarked 3-D mesh quality assessment. IEEE
-// Trans. Multimedia 9(2) (2007); where their text leaves a normalisation open this is ours, so
-// compare values of triglyph with each other only.
+// Returns the multiscale roughness, dimensionless, 0 for a flat surface. A face's bend is the mean
+// of 1 - cos of the dihedral angles to its neighbours. A point's roughness is the mean times the
+// variance of the bends of the faces within one ring, or within two rings, per unit of their area,
+// whichever is greater. A face's roughness is the mean of its points', and the result is the sum
+// over the faces, weighted by area. O(faces * faces in two rings).
+// After Corsini, Gelasca, Ebrahimi, Barni, Watermarked 3-D mesh quality assessment. IEEE Trans.
+// Multimedia 9(2) (2007). Where their text leaves a normalisation open, this is our choice, so
+// values compare only with other values of triglyph.
 [[nodiscard]] double roughness(const Mesh& mesh);
 
-// log((after - before) / before + 120) - log(120) of the two roughnesses: 0 for none, and < 0 if
-// the surface got smoother. 0 if `before` is 0 and `after` too, else infinite.
+// Returns log((after - before) / before + 120) - log(120) for two roughnesses, with the paper's
+// constant: 0 if they are equal, < 0 if the surface got smoother, infinite if only `before` is 0.
 [[nodiscard]] double roughness_increase(double before, double after);
 
 }  // namespace triglyph

@@ -16,7 +16,8 @@ namespace {
 
 constexpr double kRounding = 1e-15;
 
-// Distances of many points near each other: the last one's triangle bounds the next one's reach.
+// Computes the distances of points close to each other: the triangle nearest to the last point
+// bounds the reach of the next query.
 class Probe {
  public:
   explicit Probe(const SpatialIndex& surface) : surface_(surface) {}
@@ -24,7 +25,7 @@ class Probe {
   double distance(const Vec3& point) {
     const double reach = last_ == kNoTriangle ? std::numeric_limits<double>::infinity()
                                               : surface_.distance_to(point, last_);
-    // on that triangle but for rounding; of many faces on one another the others are not asked
+    // on that triangle up to rounding; saves the query where many faces coincide
     if (reach <= kRounding * point.max_abs()) return reach;
     const ClosestPoint found = surface_.closest(point, reach);
     last_ = found.triangle;
@@ -36,7 +37,7 @@ class Probe {
   std::uint32_t last_ = kNoTriangle;
 };
 
-// Weighted sums of distances; samples weigh 1 with Metro, area with MESH.
+// Weighted sums of distances. The weight of a sample is 1 in Metro, its area in MESH.
 struct Sums {
   double max = 0, weight = 0, first = 0, second = 0;
   std::uint64_t samples = 0;
@@ -59,7 +60,7 @@ Sums join(const Sums& a, const Sums& b) {
           a.samples + b.samples};
 }
 
-// Folds what visit(i, probe, sums) adds for i in [0, n).
+// Returns the sum of what visit(i, probe, sums) adds for i in [0, n).
 template <typename Visit>
 Sums fold(std::size_t n, const SpatialIndex& surface, const Visit& visit) {
   const std::size_t blocks = (n + kBlock - 1) / kBlock;
@@ -93,7 +94,7 @@ std::vector<std::uint32_t> used_points(const Mesh& mesh) {
   return points;
 }
 
-// Whole samples out of fractions; what is left over goes to the next.
+// Rounds fractional sample counts to integers, carrying each remainder to the next.
 std::vector<std::uint32_t> whole_samples(std::span<const double> shares) {
   std::vector<std::uint32_t> counts(shares.size());
   double carried = 0;
@@ -157,7 +158,7 @@ class Metro {
     });
   }
 
-  // The inner points of a grid of similar triangles that has about so many.
+  // Samples the inner points of a grid of similar triangles that has about `count` of them.
   void similar_triangles(const Triangle& t, std::uint32_t count, Probe& probe, Sums& sums) const {
     const auto rows = static_cast<int>((std::sqrt(1 + 8.0 * count) + 5) / 2);
     const Vec3& corner = mesh_.positions[t[0]];
@@ -176,7 +177,8 @@ class Metro {
   double area_;
 };
 
-// The distance over a triangle, linear between its corners' distances, and its square, integrated.
+// Adds the integrals of the distance and of its square over a triangle, the distance being linear
+// between the corners.
 void integrate(const std::array<double, 3>& d, double area, Sums& sums) {
   const double sum = d[0] + d[1] + d[2];
   const double squares = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
@@ -195,7 +197,7 @@ void integrate_face(const Mesh& mesh, const Triangle& t, double step, Probe& pro
   const auto rows = static_cast<std::size_t>(std::max(1.0, std::ceil(longest / step)));
   const auto parts = static_cast<double>(rows);
   const double area = triangle_area(mesh.positions, t) / (parts * parts);
-  std::vector<double> last;  // distances of the row before, one more than this row's
+  std::vector<double> last;  // distances of the previous row, which has one sample more
   for (std::size_t i = 0; i <= rows; ++i) {
     std::vector<double> row(rows - i + 1);
     for (std::size_t j = 0; j < row.size(); ++j) {

@@ -17,8 +17,9 @@
 namespace triglyph {
 namespace {
 
-// A surface's points and curvatures there, and for each point a place on the other surface with
-// the curvature there. Curvatures are relative to the size, so they have no unit.
+// The points of a surface with their curvatures, and for each point its place on the other surface
+// with the curvature there. Curvatures are multiplied by the size of the mesh, so they are
+// dimensionless.
 struct Matched {
   std::span<const Vec3> positions;
   const EdgeGraph& graph;
@@ -29,13 +30,13 @@ struct Matched {
 
 struct Window {
   double radius = 0;
-  double deviation = 0;  // of its Gaussian weights
+  double deviation = 0;  // standard deviation of its Gaussian weights
 };
 
 // One place in a window, on both surfaces.
 struct Sample {
   double here, there;                // curvatures
-  double weight_here, weight_there;  // by distance from the window's centre
+  double weight_here, weight_there;  // from the distance to the window's centre
 };
 
 // Weighted moments of the two curvatures in a window.
@@ -69,7 +70,7 @@ Moments moments_of(std::span<const Sample> samples) {
   return m;
 }
 
-// The three terms, each with weight 1, 1, 1/2 in the mean below.
+// Returns the three terms, whose weights in the mean below are 1, 1 and 1/2.
 std::array<double, 3> terms_of(const Moments& m) {
   const double product = m.deviation_here * m.deviation_there;
   return {std::abs(m.mean_here - m.mean_there) / (std::max(m.mean_here, m.mean_there) + 1),
@@ -90,7 +91,7 @@ double gaussian(const Vec3& a, const Vec3& b, double deviation) {
   return std::exp(-(a - b).sqrnorm() / (2 * deviation * deviation));
 }
 
-// The distortion at every point.
+// Returns the distortion at every point.
 std::vector<double> local_distortion(const Matched& m, const Window& window, double exponent) {
   std::vector<double> distortion(m.positions.size(), 0);
   parallel_walks(m.positions, m.graph, [&](SurfaceWalk& walk, std::uint32_t centre) {
@@ -112,7 +113,7 @@ std::vector<double> local_distortion(const Matched& m, const Window& window, dou
   return distortion;
 }
 
-// Third-power mean over the points that have edges.
+// Returns the power mean, with exponent 3, over the points that have edges.
 double pooled(std::span<const double> distortion, const EdgeGraph& graph) {
   double sum = 0;
   double count = 0;
@@ -135,7 +136,7 @@ std::vector<double> relative_curvatures(const Mesh& mesh, const EdgeGraph& graph
   return curvatures;
 }
 
-// At a place of a triangle, linear between its corners.
+// Returns the value at a place on a triangle, interpolated linearly between its corners.
 double interpolated(const Mesh& mesh, std::span<const double> values, const ClosestPoint& place) {
   const Triangle& t = mesh.triangles[place.triangle];
   double total = 0, sum = 0;

@@ -1,4 +1,4 @@
-// Walks over the edges of a surface within a ball, as the measures of local shape do.
+// Walks over the edges of a surface within a ball, for measures of local shape.
 #pragma once
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 
 namespace triglyph {
 
-// The share of the segment from `from` along `along` that lies within a radius of the centre;
-// precondition: `from` does.
+// Returns the share, 0 to 1, of the segment from `from` to `from + along` that lies within `radius`
+// of `centre`. Precondition: `from` lies within it.
 [[nodiscard]] inline double share_within(const Vec3& centre, double radius, const Vec3& from,
                                          const Vec3& along) {
   const Vec3 arm = from - centre;
@@ -26,15 +26,18 @@ namespace triglyph {
   return std::min(1.0, std::max(0.0, share));
 }
 
+// Keeps its memory between walks, so that one object serves many points.
 class SurfaceWalk {
  public:
-  // Views of both must outlive the walk.
+  // Both must outlive the walk.
   SurfaceWalk(std::span<const Vec3> positions, const EdgeGraph& graph)
       : positions_(positions), graph_(graph), states_(positions.size(), 0) {}
 
-  // Over the part of the surface within a radius of the start that hangs together with it:
-  // visit(from, spoke, share, is_new) once for every edge that begins there, with its share within,
-  // and whether it is the first to reach its end (share 1). The order is fixed.
+  // Walks over the part of the surface that lies within `radius` (model units) of the start and is
+  // connected to it there. Calls visit(from, spoke, share, is_new) once for every edge with an end
+  // in that part, where `share` is the share of the edge within the radius, and `is_new` tells that
+  // the edge is the first to reach its other end (with share 1). The order is fixed. O(edges
+  // visited).
   template <typename Visit>
   void visit(std::uint32_t start, double radius, const Visit& visit) {
     round_ += 2;
@@ -45,7 +48,7 @@ class SurfaceWalk {
       const std::uint32_t from = queue_[next];
       states_[from] = round_ + 1;
       for (const EdgeGraph::Spoke& spoke : graph_.around(from)) {
-        if (states_[spoke.to] == round_ + 1) continue;  // visited from its other end
+        if (states_[spoke.to] == round_ + 1) continue;  // visited from the other end
         const Vec3 along = positions_[spoke.to] - positions_[from];
         const double share = share_within(centre, radius, positions_[from], along);
         const bool is_new = share >= 1 && states_[spoke.to] != round_;
@@ -61,7 +64,7 @@ class SurfaceWalk {
  private:
   std::span<const Vec3> positions_;
   const EdgeGraph& graph_;
-  std::vector<std::uint64_t> states_;  // round_: in the queue; round_ + 1: its edges are visited
+  std::vector<std::uint64_t> states_;  // round_: queued; round_ + 1: its edges are visited
   std::uint64_t round_ = 0;
   std::vector<std::uint32_t> queue_;
 };
@@ -69,7 +72,7 @@ class SurfaceWalk {
 // Calls body(walk, point) for every point, in parallel.
 template <typename Body>
 void parallel_walks(std::span<const Vec3> positions, const EdgeGraph& graph, const Body& body) {
-  // few enough walks that their memory does not count
+  // few enough walks that their memory is negligible
   const std::size_t block = std::max<std::size_t>(512, positions.size() / 64);
   parallel_blocks(
       positions.size(),
