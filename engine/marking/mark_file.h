@@ -1,5 +1,5 @@
-// Marking one mesh file: load, mark, write, read back, measure. The output appears only after its
-// mark was read back from it.
+// Marking of one mesh file: load, mark, write, read back, measure. The output file appears only
+// once its mark was read back from it.
 #pragma once
 
 #include <cstdint>
@@ -17,11 +17,11 @@
 namespace triglyph {
 
 enum class FileStatus {
-  Marked,       // the output is there and its mark was read back from it
+  Marked,       // the output exists, and its mark was read back from it
   TooSmall,     // fewer units than the message has parts; no output
   TooCoarse,    // the file's numbers cannot hold the mark; no output
   NotVerified,  // the mark could not be read back; no output
-  Unreadable,   // the rest: see ErrorCode
+  Unreadable,   // this and the next four: see ErrorCode
   Malformed,
   Unsupported,
   Unwritable,
@@ -30,40 +30,42 @@ enum class FileStatus {
   Interrupted,
 };
 
-// "marked", "too small", "positions too coarse", ...; the inverse returns nothing for other text.
+// Convert a status to the name in records ("marked", "too small", "positions too coarse", ..) and
+// back. file_status() returns nothing for other text.
 [[nodiscard]] std::string_view name_of(FileStatus status);
 [[nodiscard]] std::optional<FileStatus> file_status(std::string_view name);
 
+// Wall-clock times in seconds.
 struct StageTimes {
-  double load = 0, mark = 0, write = 0, read_back = 0, measure = 0;  // seconds
-  double layout = 0, assign = 0;                                     // of mark: steps 1 and 2
+  double load = 0, mark = 0, write = 0, read_back = 0, measure = 0;
+  double layout = 0, assign = 0;  // steps 1 and 2, parts of `mark`
 };
 
-// What came of one mesh: everything but the times depends on the inputs alone.
+// The result for one mesh. Everything but the times depends on the inputs alone.
 struct MarkedFile {
   std::filesystem::path mesh;
   std::filesystem::path out;
-  MarkRequest request;  // as it applied
+  MarkRequest request;  // with relative sizes made absolute for fill
   FileStatus status = FileStatus::Failed;
   std::string error;  // one line naming file and place; empty if marked
   std::string file_format;
-  std::uint64_t vertices = 0;  // coordinate triples of the file
-  std::uint64_t points = 0;    // distinct ones
-  std::uint64_t faces = 0;
-  WordFormat format;  // of the words; fill chooses the subscript bits
-  std::uint32_t parts = 0;
+  std::uint64_t vertices = 0;  // vertices of the file
+  std::uint64_t points = 0;    // distinct positions among them
+  std::uint64_t faces = 0;     // faces of the file
+  WordFormat format;           // of the words; fill chooses the subscript bits
+  std::uint32_t parts = 0;     // of the message
   std::uint32_t candidates = 0;
-  std::uint32_t units_valid = 0;     // after layout
-  std::uint32_t units_bound = 0;     // no layout has more
+  std::uint32_t units_valid = 0;     // chosen by the layout
+  std::uint32_t units_bound = 0;     // upper bound of the size of any layout
   std::uint32_t units_assigned = 0;  // given a word
-  std::uint32_t units_embedded = 0;  // returned all bits when the output was read back
+  std::uint32_t units_embedded = 0;  // whose word was read back from the output
   double cost_max = 0;               // of the assignment, model units
-  double cost_sum = 0;
-  double hausdorff = 0;           // symmetric, model units
-  double hausdorff_rel_diag = 0;  // share of the bounding box's diagonal
-  double displacement_max = 0;    // model units
-  double displacement_rms = 0;
-  // The embedded units, if detail is wanted; ascending by anchor.
+  double cost_sum = 0;               // likewise
+  double hausdorff = 0;              // symmetric, model units
+  double hausdorff_rel_diag = 0;     // relative to the bounding box's diagonal
+  double displacement_max = 0;       // model units
+  double displacement_rms = 0;       // model units, over all points
+  // The embedded units, ascending by anchor; only with MarkOptions::detail.
   std::optional<std::vector<Carrier>> units;
   std::string input_hash;
   std::string output_hash;
@@ -71,12 +73,12 @@ struct MarkedFile {
   StageTimes times;
 
   [[nodiscard]] bool is_marked() const { return status == FileStatus::Marked; }
-  // How the mark is written, with the word format that fill chose.
+  // Returns the encoding of the mark, with the word format that fill chose.
   [[nodiscard]] Encoding encoding() const;
 };
 
-// The stages of one mesh, to be run in this order, from any thread but one at a time. None throws:
-// an error becomes the result's status, and the later stages pass the mesh by.
+// The stages of marking one mesh, to be run in this order, from any thread, one at a time. They do
+// not throw: an error becomes the status of the result, and later stages then do nothing.
 class FileMarking {
  public:
   FileMarking(std::filesystem::path mesh, std::filesystem::path out, MarkRequest request);
@@ -86,11 +88,11 @@ class FileMarking {
   void load() noexcept;
   void mark(const Key& key) noexcept;
   void write() noexcept;
-  void read_back(const Key& key) noexcept;  // publishes the output if the mark is there
-  void measure() noexcept;                  // and lets go of everything but the result
+  void read_back(const Key& key) noexcept;  // publishes the output if the mark can be read from it
+  void measure() noexcept;                  // also releases everything but the result
 
-  // Ends a mesh whose output is not there yet as interrupted; of one that failed already, nothing
-  // changes.
+  // Gives the mesh the status Interrupted, unless it failed already. To be called only before the
+  // output is published.
   void interrupt() noexcept;
 
   [[nodiscard]] const MarkedFile& result() const { return result_; }
@@ -112,9 +114,9 @@ class FileMarking {
                                    const std::filesystem::path& out, const MarkRequest& request,
                                    const Key& key);
 
-// Returns the bytes of memory that marking takes at most, from the size of the file, its ending
-// (in any case) and what is to be hidden. An estimate from above for meshes as they are found; a
-// file of comments takes less.
+// Returns an upper estimate of the memory, in bytes, that marking a file takes, from its size, its
+// extension (in any case) and whether it is filled. Measured on common meshes; a file that is
+// mostly comments takes less.
 [[nodiscard]] std::uint64_t estimate_memory(std::uint64_t file_bytes,
                                             const std::filesystem::path& mesh, bool fill);
 

@@ -1,4 +1,4 @@
-// What marking answers.
+// The result of marking.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@ namespace triglyph {
 
 enum class MarkStatus {
   Marked,
-  TooSmall,   // some part found no unit that can carry it
-  TooCoarse,  // the file's numbers are too coarse to hold the cells
+  TooSmall,   // fewer units than parts, or a part without a unit that can carry it
+  TooCoarse,  // the numbers of the file are too far apart for the quantiser cells
 };
 
 // A unit that carries a word after rounding and settling.
@@ -26,23 +26,23 @@ struct Carrier {
 
 struct Marking {
   MarkStatus status = MarkStatus::Marked;
-  std::vector<Vec3> positions;  // of all points, as the file will hold them
-  std::vector<Word> words;      // one a part
-  WordFormat format;            // of the words; --fill chooses the subscript bits
-  std::vector<Carrier> carriers;
+  std::vector<Vec3> positions;      // of all points, as the file will hold them
+  std::vector<Word> words;          // one per part
+  WordFormat format;                // of the words; fill chooses the subscript bits
+  std::vector<Carrier> carriers;    // ascending by anchor
   std::uint32_t parts_carried = 0;  // parts with at least one carrier
   std::uint32_t candidates = 0;
-  std::uint32_t units_valid = 0;     // after layout
-  std::uint32_t units_bound = 0;     // no layout has more
-  std::uint32_t units_assigned = 0;  // given a word they can carry
-  std::uint32_t units_dropped = 0;   // taken back: rounding or a flipped face spoiled them
+  std::uint32_t units_valid = 0;     // chosen by the layout
+  std::uint32_t units_bound = 0;     // upper bound of the size of any layout
+  std::uint32_t units_assigned = 0;  // given a word that they can carry
+  std::uint32_t units_dropped = 0;   // restored, because of rounding or a flipped face
   double cost_max = 0;               // of the assignment, model units
-  double cost_sum = 0;
-  double layout_seconds = 0;  // step 1: candidates, conflicts, layout
-  double assign_seconds = 0;  // step 2: costs and assignment, all rounds
+  double cost_sum = 0;               // likewise
+  double layout_seconds = 0;         // step 1: candidates, conflicts, layout
+  double assign_seconds = 0;         // step 2: costs and assignment, all rounds
 };
 
-// The nearest point that the output can hold.
+// Returns the nearest point that the output can represent.
 using Rounding = std::function<Vec3(const Vec3&)>;
 
 }  // namespace triglyph

@@ -8,9 +8,8 @@
 namespace triglyph {
 namespace {
 
-// Pairs of unit and word that one assignment looks at: 256 MB of costs. More units than fit are
-// dealt into blocks, each with its share of the demand; beyond that size the optimum is one of
-// blocks.
+// Most pairs of unit and word in one assignment: 256 MB of costs. Beyond it the units are split
+// into blocks, each with its share of the demand, and the assignment is optimal within blocks only.
 constexpr std::size_t kMaxPairs = std::size_t{1} << 26;
 
 constexpr std::size_t kNoBlock = static_cast<std::size_t>(-1);
@@ -28,7 +27,7 @@ Assignment assign(const CostMatrix& costs, std::span<const std::uint32_t> demand
   throw Error(ErrorCode::Usage, {}, "", "unknown assignment");
 }
 
-// How many units each part wants: the redundancy, or what the units allow, as evenly as can be.
+// Returns the demand of each part: the redundancy, or what the units allow, as evenly as possible.
 std::vector<std::uint32_t> share_demand(std::size_t units, std::size_t parts,
                                         std::uint32_t redundancy) {
   const std::size_t wanted =
@@ -57,7 +56,7 @@ WordAssigner::WordAssigner(const BoundScheme& scheme, const UnitSet& units,
 WordPlan WordAssigner::plan(std::uint32_t redundancy) {
   WordPlan best = solve(redundancy);
   if (!is_limited() || redundancy == 0 || best.cost_max <= max_cost_) return best;
-  // the greatest redundancy that keeps within the limit, by bisection; kMinRedundancy in any case
+  // bisection for the greatest redundancy within the limit; kMinRedundancy in any case
   const auto possible = static_cast<std::uint32_t>((valid_.size() - 1) / words_.size() + 1);
   std::uint32_t too_many = std::min(redundancy, possible);
   std::uint32_t enough = std::min(kMinRedundancy, too_many);

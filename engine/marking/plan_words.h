@@ -1,5 +1,5 @@
-// Step 2 of the paper on a mesh: which valid unit carries which watermark word, and how often each
-// part is repeated.
+// Step 2 of the paper on a mesh: which valid unit carries which watermark word, and how many units
+// each part gets.
 // Wang & Hu, CAGD 27 (2010), section 2.2; the choice of the redundancy is ours.
 #pragma once
 
@@ -12,11 +12,11 @@
 
 namespace triglyph {
 
-// Every part gets at least this many units where there are enough; more only as long as no point
-// moves farther than MarkOptions::max_move_percent.
+// Every part gets at least this many units if there are enough, so that a few can be lost; more
+// only as long as no point moves farther than MarkOptions::max_move_percent.
 inline constexpr std::uint32_t kMinRedundancy = 4;
 
-// A move this many times the limit would be seen: such a pair is infeasible.
+// A pair that moves a point farther than this many times the limit is infeasible: it would be seen.
 inline constexpr double kVisibleMove = 10;
 
 struct WordPlan {
@@ -27,17 +27,17 @@ struct WordPlan {
 
 class WordAssigner {
  public:
-  // All references must outlive the assigner. `max_cost`: model units; 0: any.
+  // All references must outlive the assigner. `max_cost` is in model units; 0: no limit.
   WordAssigner(const BoundScheme& scheme, const UnitSet& units,
                std::span<const std::uint32_t> valid, std::span<const Word> words,
                const MarkOptions& options, double max_cost);
 
-  // The best plan without the pairs that were ruled out. With a least redundancy R wanted of 0
-  // every valid unit is used. An un-optimised plan takes units as they come and has no limit of
-  // cost.
+  // Returns the best plan without the pairs that were ruled out, with `redundancy` units per part
+  // or as many as the limit of cost allows; 0 uses every valid unit. Sequential assignment has no
+  // limit of cost.
   [[nodiscard]] WordPlan plan(std::uint32_t redundancy);
 
-  // A pair that turned out not to be embeddable.
+  // Excludes a pair, because it could not be embedded, from further plans.
   void rule_out(const Placement& placement) { ruled_out_.insert({placement.unit, placement.word}); }
 
  private:

@@ -1,4 +1,4 @@
-// A written or found file with what it takes to read it.
+// A mesh file that is loaded for extraction.
 #pragma once
 
 #include <filesystem>
@@ -22,7 +22,8 @@ struct Readable {
   [[nodiscard]] Surface surface() const { return {file.mesh(), halfedges}; }
 };
 
-// Returns the carriers whose whole word was read at their anchor. Both ascend by anchor. O(both).
+// Returns the carriers whose word was read at their anchor. Precondition: carriers and readings
+// ascend by anchor. O(carriers + readings).
 [[nodiscard]] inline std::vector<Carrier> carriers_read(std::span<const Carrier> carriers,
                                                         std::span<const Word> words,
                                                         std::span<const Reading> readings) {

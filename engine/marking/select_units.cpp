@@ -8,7 +8,7 @@
 namespace triglyph {
 namespace {
 
-// The least cost of every unit under some words that stand for all.
+// Returns the least cost of every unit over a sample of the words.
 std::vector<float> cheapest_costs(const BoundScheme& scheme, const UnitSet& units,
                                   std::span<const Word> words) {
   std::vector<Word> probes;
@@ -27,7 +27,7 @@ std::vector<float> cheapest_costs(const BoundScheme& scheme, const UnitSet& unit
   return cheapest;
 }
 
-// All units but the dearest share of them.
+// Returns the units without the most expensive `share` of them.
 UnitSet without_dearest(const UnitSet& units, const std::vector<float>& costs, double share) {
   std::vector<std::uint32_t> order(units.size());
   std::iota(order.begin(), order.end(), 0U);

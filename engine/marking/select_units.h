@@ -1,5 +1,5 @@
-// Step 1 of the paper on a mesh: which units there are.
-// Wang & Hu, CAGD 27 (2010), section 2.1; leaving out dear candidates is ours.
+// Step 1 of the paper on a mesh: the choice of the units.
+// Wang & Hu, CAGD 27 (2010), section 2.1; leaving out expensive candidates is ours.
 #pragma once
 
 #include <cstdint>
@@ -10,18 +10,19 @@
 
 namespace triglyph {
 
-// So many words tell a candidate's cheapest cost well enough.
+// Words from which the least cost of a candidate is estimated: enough to rank candidates, few
+// enough to cost little.
 inline constexpr std::uint32_t kProbeWords = 16;
 
 struct Capacity {
-  UnitSet units;                     // candidates, without those left out
-  std::vector<std::uint32_t> valid;  // units that do not interfere, ascending
-  std::uint32_t bound = 0;           // no layout has more
+  UnitSet units;                     // the candidates, without those left out
+  std::vector<std::uint32_t> valid;  // the layout: units that do not interfere, ascending
+  std::uint32_t bound = 0;           // upper bound of the size of any layout
 };
 
-// `words`: those that are to be hidden, or some like them; used only to leave out dear candidates.
-// `scheme` is bound to `surface`. Throws Error Usage if MarkOptions::drop_dearest_percent lies
-// outside 0 up to 100.
+// Returns the candidates of the surface and a layout of them. `words` are those to hide, or a
+// sample of them; they serve only to leave out expensive candidates. Precondition: `scheme` is
+// bound to `surface`. Throws Error Usage unless 0 <= MarkOptions::drop_dearest_percent < 100.
 [[nodiscard]] Capacity find_capacity(const Surface& surface, const BoundScheme& scheme,
                                      std::span<const Word> words, const MarkOptions& options);
 
