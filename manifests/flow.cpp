@@ -13,17 +13,17 @@ namespace {
 // Flow graph nodes copy their messages, so items travel as shared pointers.
 using ItemPointer = std::shared_ptr<FlowItem>;
 
-// Items that may be known to the graph at once: enough to choose large ones first and to deliver in
-// order while one item takes long, few enough to cost no memory.
+// Most items in the graph at once: enough to start large ones first and to deliver in order while
+// one takes long, few enough to take hardly any memory.
 constexpr std::size_t kWindow = 256;
 
-// An item has let go of its memory.
+// The message that an item has released its memory.
 struct Released {
   std::uint64_t bytes = 0;
 };
 
-// Decides which waiting item may start: the largest that fits into the budget; an item larger than
-// the whole budget when nothing else is in work. Runs in a serial node, so it needs no lock.
+// Selects the waiting item that may start: the largest that fits into the budget, or one larger
+// than the whole budget if no other is in process. Runs in a serial node, so it needs no lock.
 class Admission {
  public:
   explicit Admission(std::uint64_t budget) : budget_(budget) {}

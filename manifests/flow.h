@@ -1,5 +1,5 @@
-// Work on many files at once: a oneTBB flow graph that starts the largest waiting item that fits
-// into the memory budget, runs its stages, and delivers the items in the order they came.
+// Parallel processing of many files: a oneTBB flow graph that starts the largest waiting item that
+// fits into the memory budget, runs its stages, and delivers the items in input order.
 #pragma once
 
 #include <atomic>
@@ -10,33 +10,32 @@
 
 namespace triglyph {
 
-// One file on its way. Derive from it to carry what the stages need.
+// One file in the flow. Derived classes hold the data of the stages.
 struct FlowItem {
   std::size_t index = 0;              // place in the run, from 0
-  std::uint64_t memory_estimate = 0;  // bytes the item needs at most while it is worked on
+  std::uint64_t memory_estimate = 0;  // most bytes that the item takes while it is processed
 
   virtual ~FlowItem() = default;
 };
 
 struct FlowOptions {
-  // Bytes of memory for items being worked on; an item that needs more goes alone.
+  // Bytes of memory for items in process; an item that needs more is processed alone.
   std::uint64_t memory_bytes = std::uint64_t{4} << 30;
 };
 
 struct Flow {
-  // Returns the items in order, numbered from 0, and null at the end; called one at a time. What it
-  // throws ends the run after the items that are already in work, and is rethrown by run_flow.
+  // Returns the items in order, numbered from 0, and null at the end. Called by one thread at a
+  // time. An exception ends the run after the items in process, and run_flow() rethrows it.
   std::function<std::unique_ptr<FlowItem>()> next;
-  // Run one after another for an item; stages of different items run at the same time. They must
-  // not throw.
+  // Run one after another for an item, and in parallel for different items. Must not throw.
   std::vector<std::function<void(FlowItem&)>> stages;
-  // Called in the order of the items, one call at a time. What it throws cancels the run and is
-  // rethrown by run_flow.
+  // Called in the order of the items, one call at a time. An exception cancels the run, and
+  // run_flow() rethrows it.
   std::function<void(FlowItem&)> deliver;
 };
 
-// Runs the flow to its end. When `stop` becomes true no further item is asked for; those already
-// known still pass through the stages, which may look at `stop` themselves.
+// Runs the flow to its end. When `stop` becomes true, no further item is requested; items that were
+// returned already still pass through the stages, which may check `stop` themselves.
 void run_flow(const Flow& flow, const FlowOptions& options, const std::atomic<bool>& stop);
 
 }  // namespace triglyph

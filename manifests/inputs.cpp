@@ -47,7 +47,7 @@ std::vector<std::string> names_in(std::istream& list) {
 }
 
 std::vector<fs::path> meshes_of_manifest(const fs::path& manifest) {
-  // the message and the outputs do not matter here, only the meshes do
+  // only the meshes matter here, not the message and the outputs
   ManifestReader reader(manifest, {{"message", std::string("any")}}, ".");
   std::vector<fs::path> meshes;
   while (std::optional<Job> job = reader.next()) meshes.push_back(std::move(job->mesh));

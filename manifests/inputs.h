@@ -1,4 +1,4 @@
-// The files that a user names: one by one, by folder, by glob, by manifest, or in a list.
+// Input files as users name them: by name, folder, glob, manifest, or list.
 #pragma once
 
 #include <filesystem>
@@ -9,15 +9,15 @@
 
 namespace triglyph {
 
-// Is this the name of a file format that MeshFile reads, by its ending in any case?
+// Returns whether the extension, in any case, is that of a format that MeshFile reads.
 [[nodiscard]] bool is_mesh_name(const std::filesystem::path& path);
 
-// Returns the files in the order named, each once. A folder stands for all meshes in it at any
-// depth, sorted by name; a name with wildcards that is no file for what it matches; a .jsonl file
-// for the meshes of that manifest; "-" for the names in `list`, one a line, or ended by NUL bytes
-// if there are any. Other names stand for themselves, whether or not there is such a file. Throws
-// Error Unreadable for a folder that cannot be read, Malformed for a manifest, Usage for a wildcard
-// that matches nothing or a name with a control character.
+// Returns the files in the order named, without duplicates. A folder stands for all meshes in it at
+// any depth, sorted by name; a pattern, unless a file has that name, for its matches; a .jsonl file
+// for the meshes of that manifest; "-" for the names in `list`, one per line, or separated by NUL
+// bytes if it has any. Other names stand for themselves, whether or not such a file exists. Throws
+// Error Unreadable for a folder that cannot be read, Malformed for an invalid manifest, and Usage
+// for a pattern without matches or a name with a control character.
 [[nodiscard]] std::vector<std::filesystem::path> gather_files(std::span<const std::string> names,
                                                               std::istream& list);
 

@@ -1,4 +1,4 @@
-// What is to be done to one mesh of a run.
+// The marking of one mesh in a run.
 #pragma once
 
 #include <cstdint>

@@ -10,10 +10,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A record nests three deep (object, "units", a unit); a few levels more leave room.
+// A record has three levels (object, "units", unit); the rest is room for later schemas.
 constexpr int kDeepest = 8;
 
-// Refuses what a line of ours does not hold, while the parser is still on its way through it.
+// Refuses repeated keys and deep nesting while the parser is still reading.
 class StrictLine {
  public:
   bool operator()(int depth, Json::parse_event_t event, const Json& parsed) {
@@ -50,7 +50,7 @@ class StrictLine {
   std::vector<std::set<std::string>> keys_;  // of the objects that are open
 };
 
-// The parser's message without the library's name and number for it.
+// Returns the parser's message without the library's prefix.
 std::string plain_message(const Json::exception& error) {
   const std::string text = error.what();
   const auto end_of_tag = text.find("] ");

@@ -1,4 +1,5 @@
-// One line of JSON as manifests and records hold it: read strictly, and as values of options.
+// Strict parsing of single lines of JSON, as manifests and records hold them, and conversion to
+// values of options.
 #pragma once
 
 #include <string>
@@ -9,9 +10,8 @@
 
 namespace triglyph {
 
-// Parses one JSON object. Unlike a plain parser it refuses a key that comes twice in an object, and
-// anything nested deeper than lines of ours ever are, before it takes memory or stack. Throws Error
-// Malformed without a path. O(bytes).
+// Parses one JSON object. Refuses repeated keys, and nesting deeper than any line that triglyph
+// writes, before that takes memory or stack. Throws Error Malformed without a path. O(bytes).
 [[nodiscard]] nlohmann::ordered_json parse_json_line(const std::string& line);
 
 // Returns a JSON value as an option's value. Throws Error Usage naming the key for an array, an
@@ -20,7 +20,8 @@ namespace triglyph {
 
 [[nodiscard]] nlohmann::ordered_json to_json(const OptionValue& value);
 
-// One line of JSON, ended by a newline; bytes that are no UTF-8 (in file names) are replaced.
+// Returns one line of JSON with its newline. Bytes that are not UTF-8, as in file names, are
+// replaced.
 [[nodiscard]] std::string to_line(const nlohmann::ordered_json& json);
 
 }  // namespace triglyph

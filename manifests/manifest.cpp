@@ -19,7 +19,7 @@ bool has_wildcard(const std::string& text) {
   return text.find_first_of("*?[") != std::string::npos;
 }
 
-// Component by component; ** stands for any number of them, none included.
+// Matches component by component; ** matches any number of components, including none.
 bool matches(fs::path::iterator pattern, fs::path::iterator pattern_end, fs::path::iterator name,
              fs::path::iterator name_end) {
   if (pattern == pattern_end) return name == name_end;
@@ -32,15 +32,15 @@ bool matches(fs::path::iterator pattern, fs::path::iterator pattern_end, fs::pat
          matches(rest, pattern_end, std::next(name), name_end);
 }
 
-// Where the output of one mesh goes if its line does not name a file: below `directory`, as the
-// mesh lies below `root`.
+// Returns the output path of a mesh whose line does not name a file: below `directory`, at the path
+// of the mesh relative to `root`.
 fs::path place_below(const fs::path& directory, const fs::path& mesh, const fs::path& root) {
   const fs::path relative = mesh.lexically_relative(root);
   const bool inside = !relative.empty() && *relative.begin() != "..";
   return directory / (inside ? relative : mesh.filename());
 }
 
-// One name for a file however it is spelled; the file itself need not exist.
+// Returns the canonical name of a file, which need not exist.
 std::string canonical_name(const fs::path& path) {
   std::error_code error;
   const fs::path absolute = fs::absolute(path, error);
@@ -209,7 +209,7 @@ std::size_t check_plan(JobSource& jobs) {
     const char* lost = "an output of the run would overwrite this mesh";
     use(canonical_name(job->mesh), kInput, kOutput, job->mesh, lost);
     std::error_code error;
-    const fs::path target = fs::canonical(job->mesh, error);  // where a symbolic link leads
+    const fs::path target = fs::canonical(job->mesh, error);  // the target of a symbolic link
     if (!error) use(target.string(), kInput, kOutput, job->mesh, lost);
     const std::string out = canonical_name(job->out);
     use(out, 0, kInput, job->out, "the output would overwrite a mesh of the run");

@@ -1,6 +1,7 @@
-// Lists of meshes. A manifest is JSON Lines: an optional first object {"triglyph": 1, "defaults":
-// {...}}, then one object a mesh; "mesh" may be a glob (*, ?, [..], ** for any depth). Paths are
-// relative to the manifest. It is read as a stream, so a million lines cost no memory.
+// Lists of meshes to mark. A manifest is JSON Lines: an optional first object {"triglyph": 1,
+// "defaults": {...}}, then one object per mesh. "mesh" may be a glob (*, ?, [..], ** for any
+// depth). Paths are relative to the manifest. It is read as a stream, so its length takes no
+// memory.
 #pragma once
 
 #include <deque>
@@ -16,29 +17,30 @@
 
 namespace triglyph {
 
-// Hands out jobs in order; numbered from 0.
+// Supplies jobs in order, numbered from 0.
 class JobSource {
  public:
   virtual ~JobSource() = default;
+  // Returns the next job, or nothing at the end.
   [[nodiscard]] virtual std::optional<Job> next() = 0;
 };
 
-// Keys of one line: mesh, out, and every option of marking (mark_option_specs); "defaults" takes
-// all but mesh. A line's "out" is a file, or a directory if it ends in "/"; without it the output
-// goes to `out_directory`, under the path below the manifest (or below the fixed part of the glob).
+// The keys of a line are "mesh", "out" and the options of marking (mark_option_specs()); "defaults"
+// takes all of these but "mesh". "out" names a file, or a directory if it ends in "/". Without it
+// the output goes to `out_directory`, at the path of the mesh relative to the manifest, or to the
+// fixed part of the glob.
 class ManifestReader final : public JobSource {
  public:
-  // Values that the manifest does not name are taken from `values`. Throws Error Unreadable.
+  // `values` applies where the manifest gives no value. Throws Error Unreadable.
   ManifestReader(const std::filesystem::path& manifest, const OptionValues& values,
                  const std::filesystem::path& out_directory);
 
-  // Throws Error Malformed naming the manifest's line: bad JSON, keys that are unknown, come twice,
-  // contradict each other or have values out of range, a glob that matches nothing, no place for
-  // the output.
+  // Throws Error Malformed, naming the line, for invalid JSON, for keys that are unknown, repeated,
+  // contradictory or out of range, for a glob without matches, and if there is no output path.
   [[nodiscard]] std::optional<Job> next() override;
 
  private:
-  struct Line;  // what a line says
+  struct Line;  // a parsed line
 
   void read_line(const std::string& line);
   [[nodiscard]] Line parse(const std::string& line) const;
@@ -55,10 +57,10 @@ class ManifestReader final : public JobSource {
   std::deque<Job> ready_;
 };
 
-// Meshes named one by one; each output is `out_directory` / file name.
+// Jobs for meshes that are named one by one; the output is `out_directory` / file name.
 class MeshList final : public JobSource {
  public:
-  // Throws Error Usage for values that make no request: see resolve().
+  // Throws Error Usage as resolve() does.
   MeshList(std::vector<std::filesystem::path> meshes, const OptionValues& values,
            const std::filesystem::path& out_directory);
   [[nodiscard]] std::optional<Job> next() override;
@@ -70,14 +72,15 @@ class MeshList final : public JobSource {
   std::size_t next_ = 0;
 };
 
-// Files that match a pattern with *, ?, [..] or **, sorted; a pattern without wildcards is itself.
+// Returns the files that match a pattern with *, ?, [..] or **, sorted. A pattern without wildcards
+// matches itself.
 [[nodiscard]] std::vector<std::filesystem::path> expand_glob(const std::filesystem::path& pattern);
 
-// The longest leading part of a pattern without wildcards, a directory.
+// Returns the longest leading directory of a pattern that has no wildcards.
 [[nodiscard]] std::filesystem::path glob_root(const std::filesystem::path& pattern);
 
-// Looks at a whole run before it starts. Throws Error Usage if an output would overwrite an input
-// or another output. Returns the number of jobs. 16 bytes of memory a job.
+// Checks a run before it starts, and returns the number of jobs. Throws Error Usage if an output
+// would overwrite an input or another output. Takes 16 bytes of memory per job.
 std::size_t check_plan(JobSource& jobs);
 
 }  // namespace triglyph

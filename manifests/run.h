@@ -1,5 +1,5 @@
-// A whole collection: jobs marked and files read many at a time, bounded by memory, with the
-// results in order.
+// Runs over whole collections: many files are marked, read or verified in parallel, within a memory
+// budget, and results come in order.
 #pragma once
 
 #include <atomic>
@@ -18,14 +18,14 @@
 
 namespace triglyph {
 
-// Marks every job. `on_record` is called in job order, one call at a time. When `stop` becomes true
-// no further job is started, meshes in work end as Interrupted unless they are already being
-// written out, and no half-written file is left. Never throws for what a mesh holds; Error
-// Malformed if the manifest breaks off.
+// Marks every job, and calls `on_record` in the order of the jobs, one call at a time. When `stop`
+// becomes true, no further job is started, meshes in process end as Interrupted unless their output
+// is being published, and no incomplete file is left. An error of a mesh goes into its record.
+// Throws Error Malformed if a line of the manifest is invalid.
 void run_jobs(JobSource& jobs, const Key& key, const FlowOptions& options,
               const std::function<void(const Record&)>& on_record, const std::atomic<bool>& stop);
 
-// What came of reading one file: a reading, or why there is none.
+// The result of reading one file: a reading, or the reason why there is none.
 struct ReadResult {
   std::filesystem::path path;
   std::optional<FileReading> reading;
@@ -33,7 +33,8 @@ struct ReadResult {
   std::string error;                 // one line naming file and place
 };
 
-// Reads every file under every encoding and key; see read_file(). Results come in order.
+// Reads every file under every encoding and key; see read_file(). Calls `on_result` in the order of
+// the files, one call at a time.
 void read_files(std::span<const std::filesystem::path> files, std::span<const Encoding> encodings,
                 std::span<const Key> keys, const FlowOptions& options,
                 const std::function<void(const ReadResult&)>& on_result,
@@ -42,8 +43,8 @@ void read_files(std::span<const std::filesystem::path> files, std::span<const En
 // Returns the next record of a run, or nothing at the end.
 using RecordSource = std::function<std::optional<Record>()>;
 
-// Verifies the file of every record; see verify_file(). Verdicts come in the order of the records.
-// What the source throws is rethrown after the verdicts before it.
+// Verifies the file of every record; see verify_file(). Calls `on_verdict` in the order of the
+// records, one call at a time. An exception of the source is rethrown after the verdicts before it.
 void verify_files(const RecordSource& records, const Key& key, bool locate,
                   const FlowOptions& options,
                   const std::function<void(const Record&, const Verification&)>& on_verdict,

@@ -3,8 +3,8 @@
 
 namespace triglyph {
 
-// Exit codes as triglyph's: 0 done, 1 fatal, 2 usage or an unreadable mesh, 3 some pictures of a
-// batch failed.
+// Runs the program and returns an exit code: 0 done, 1 fatal, 2 usage or an unreadable mesh, 3 some
+// pictures of a batch failed.
 [[nodiscard]] int run_render_app(int argc, char** argv);
 
 }  // namespace triglyph

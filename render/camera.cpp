@@ -14,9 +14,9 @@ namespace triglyph {
 namespace {
 
 constexpr double kMargin = 1.06;
-constexpr double kEnough = 0.75;  // of the greatest area that any usual view shows
+constexpr double kMinAreaShare = 0.75;  // of the greatest area that any of the views shows
 
-// The view's axes in the model's coordinates.
+// Returns the axes of the view in model coordinates.
 Camera axes_of(const View& view) {
   const double azimuth = view.azimuth * M_PI / 180;
   const double elevation = view.elevation * M_PI / 180;
@@ -34,7 +34,7 @@ Camera axes_of(const View& view) {
   return camera;
 }
 
-// In the camera's axes.
+// Returns the bounding box of the points in the axes of the camera.
 Box box_in(std::span<const Vec3> points, const Camera& camera) {
   check(!points.empty(), "a view needs points");
   const Vec3 towards = camera.towards_viewer();
@@ -45,7 +45,7 @@ Box box_in(std::span<const Vec3> points, const Camera& camera) {
   return box;
 }
 
-// The surface's area as seen from there, back sides included.
+// Returns the projected area of the surface, including back sides.
 double shown_area(const Mesh& mesh, const Vec3& towards_viewer) {
   return parallel_reduce(
       mesh.triangles.size(), 0.0,
@@ -108,7 +108,7 @@ View automatic_view(const Mesh& mesh) {
   }
   const double greatest = *std::max_element(areas.begin(), areas.end());
   const auto first = std::find_if(areas.begin(), areas.end(),
-                                  [&](double area) { return area >= kEnough * greatest; });
+                                  [&](double area) { return area >= kMinAreaShare * greatest; });
   return kUsual[static_cast<std::size_t>(first - areas.begin()) % kUsual.size()];
 }
 
@@ -138,7 +138,7 @@ Camera close_view(const Vec3& place, const Vec3& normal, double half_height, con
   const double length = normal.norm();
   if (!(length > 0)) return camera;
   const Vec3 towards = normal / length;
-  // what was up stays up, as far as the new direction lets it
+  // keeps the vertical as far as the new direction allows
   const Vec3 up_hint =
       std::abs(dot(like.up, towards)) < 0.95 ? like.up : like.towards_viewer() * -1.0;
   const Vec3 right = cross(up_hint, towards);

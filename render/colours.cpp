@@ -13,7 +13,7 @@ struct Stop {
   unsigned code;
 };
 
-// Linear between stops, which ascend from 0 to 1.
+// Interpolates linearly between stops, which ascend from 0 to 1.
 Colour along(std::span<const Stop> stops, double share) {
   std::size_t next = 1;
   while (next + 1 < stops.size() && stops[next].share < share) ++next;

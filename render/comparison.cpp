@@ -20,19 +20,19 @@ namespace {
 
 constexpr std::size_t kMostPanels = 6;
 constexpr int kLeastPixels = 64;
-constexpr double kNarrowest = 0.8;  // of panels whose height follows the mesh: width / height
+constexpr double kNarrowest = 0.8;  // least width / height of panels whose height suits the mesh
 constexpr double kWidest = 1.8;
-constexpr int kMostPixels = 16384;  // a side
+constexpr int kMostPixels = 16384;  // per side; larger images exhaust memory
 constexpr int kMostSamples = 4096;
-constexpr double kCloseEdges = 5;      // mean edges around from the middle of "worst" to its border
-constexpr double kCloseDistances = 8;  // and at least so many times the distance that it shows
+constexpr double kCloseEdges = 5;      // mean edge lengths from the middle of "worst" to its border
+constexpr double kCloseDistances = 8;  // and at least this many times the distance shown
 constexpr double kEdgePixels = 1.2;    // width of drawn edges
 constexpr double kDotPixels = 3;       // radius of a moved point
 
 constexpr std::array<std::string_view, 7> kPanels = {"original", "marked", "facets", "points",
                                                      "distance", "signed", "worst"};
 
-// About the middle of a close-up.
+// Draws a ring around the centre of a close-up.
 void draw_ring(int x, int y, int radius, Image& picture) {
   for (int dy = -radius - 1; dy <= radius + 1; ++dy) {
     for (int dx = -radius - 1; dx <= radius + 1; ++dx) {
@@ -131,7 +131,7 @@ class Comparison {
             "", draw(scene), Scale{100 * greatest / diagonal_, with_sign}};
   }
 
-  // Before and after, half a panel each.
+  // Draws before and after in half a panel each.
   Panel worst() {
     const double tolerance = 1e-3 * std::max(diagonal_, std::numeric_limits<double>::min());
     const HausdorffDistance distance =
@@ -161,7 +161,7 @@ class Comparison {
             std::move(both), std::nullopt};
   }
 
-  // The original's triangles that touch a face.
+  // Returns the triangles of the original that share a point with a face.
   [[nodiscard]] Mesh around_face(const Triangle& face) const {
     Mesh around{original_.positions, {}};
     for (const Triangle& triangle : original_.triangles) {

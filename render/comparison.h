@@ -1,4 +1,4 @@
-// Two meshes beside each other: what the mark moved, how far, and where it is seen most.
+// Pictures that compare two meshes: what the mark moved, how far, and where it is most visible.
 #pragma once
 
 #include <span>
@@ -14,38 +14,40 @@
 namespace triglyph {
 
 struct PictureOptions {
-  int width = 640;                // of a panel, pixels
-  int height = 0;                 // 0: as the mesh is seen
-  int samples = 16;               // a pixel
-  std::string view = "auto";      // see view_named()
-  bool is_flat = false;           // facets shaded flat instead of smooth
+  int width = 640;                // of a panel, in pixels
+  int height = 0;                 // 0: from the ratio of the mesh as seen
+  int samples = 16;               // per pixel
+  std::string view = "auto";      // automatic_view(), or see view_named()
+  bool is_flat = false;           // flat instead of smooth shading
   Colour background{1, 1, 1, 1};  // transparent if alpha is 0
 };
 
-// "original", "marked", "facets" (those that moved are blue), "points" (likewise), "distance" (of
-// each point of the marked mesh from the original surface), "signed" (the same, > 0 outside),
-// "worst" (the neighbourhood of the farthest point, before and after, with edges drawn).
+// Returns the names of the panels: "original", "marked", "facets" (those that moved are blue),
+// "points" (likewise), "distance" (of each point of the marked mesh from the original surface),
+// "signed" (the same, > 0 outside), "worst" (the surroundings of the farthest point, before and
+// after, with edges).
 [[nodiscard]] std::span<const std::string_view> panel_names();
 
-// Facets with a point that moved. Precondition: the same triangles.
+// Returns for every facet whether one of its points moved. Precondition: the same triangles.
 [[nodiscard]] std::vector<bool> moved_facets(const Mesh& original, const Mesh& marked);
 
-// Distance of each point of `marked` from the surface of `original`, model units; with a sign, less
-// than zero behind the nearest face.
+// Returns the distance of each point of `marked` from the surface of `original` in model units;
+// with a sign, < 0 behind the nearest face.
 [[nodiscard]] std::vector<double> distances(const Mesh& original, const Mesh& marked,
                                             bool with_sign);
 
-// One panel for each name, 1 to 6. Meshes with different triangles have no moved facets or points.
-// Throws Error Usage for unknown names, too many or none, bad options, or a mesh without faces.
+// Draws one panel for each name, 1 to 6. If the meshes have different triangles, no facets or
+// points count as moved. Throws Error Usage for unknown names, too many or none, bad options, or a
+// mesh without faces.
 [[nodiscard]] Image draw_comparison(const Mesh& original, const Mesh& marked,
                                     const std::vector<std::string>& panels,
                                     const PictureOptions& options);
 
-// The options with which this mesh can be drawn: the height settled. Throws Error Usage for sizes
-// out of range, or if there is nothing to see.
+// Returns the options with a height of 0 replaced by the one that suits the mesh. Throws Error
+// Usage for sizes out of range, or if there is nothing to draw.
 [[nodiscard]] PictureOptions drawable(const Mesh& mesh, PictureOptions options);
 
-// The camera that PictureOptions::view names, for this mesh. Precondition: the height is settled.
+// Returns the camera that PictureOptions::view names for this mesh. Precondition: height > 0.
 [[nodiscard]] Camera camera_for(const Mesh& mesh, const PictureOptions& options);
 
 }  // namespace triglyph

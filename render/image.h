@@ -1,4 +1,4 @@
-// Pictures in memory: linear light, premultiplied by alpha, rows from the top.
+// Images in memory: linear light, premultiplied alpha, rows from the top.
 #pragma once
 
 #include <array>
@@ -12,20 +12,20 @@ struct Colour {
   float red = 0, green = 0, blue = 0, alpha = 1;
 };
 
-// Both premultiplied: `top` in front of `below`.
+// Returns `top` composited over `below`, both premultiplied.
 [[nodiscard]] inline Colour over(const Colour& top, const Colour& below) {
   const float rest = 1 - top.alpha;
   return {top.red + rest * below.red, top.green + rest * below.green, top.blue + rest * below.blue,
           top.alpha + rest * below.alpha};
 }
 
-// `share` of b, the rest of a.
+// Interpolates linearly from a (share 0) to b (share 1).
 [[nodiscard]] inline Colour mix(const Colour& a, const Colour& b, float share) {
   return {a.red + share * (b.red - a.red), a.green + share * (b.green - a.green),
           a.blue + share * (b.blue - a.blue), a.alpha + share * (b.alpha - a.alpha)};
 }
 
-// Of an opaque colour: how much of it there is, for translucent things.
+// Returns all four channels scaled by a factor, which makes an opaque colour translucent.
 [[nodiscard]] inline Colour times(const Colour& colour, float factor) {
   return {colour.red * factor, colour.green * factor, colour.blue * factor, colour.alpha * factor};
 }
@@ -55,10 +55,11 @@ class Image {
   std::vector<Colour> pixels_;
 };
 
-// Lays `part` over the picture with its upper left corner at (left, top); what sticks out is cut.
+// Composites `part` over the picture with its upper left corner at (left, top), clipped to the
+// picture.
 void paste(const Image& part, int left, int top, Image& picture);
 
-// Fills a rectangle; what sticks out is cut.
+// Fills a rectangle, clipped to the picture.
 void fill_rectangle(int left, int top, int width, int height, const Colour& colour, Image& picture);
 
 }  // namespace triglyph

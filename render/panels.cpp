@@ -18,7 +18,7 @@ constexpr int kNoteSize = 17;
 constexpr int kNoteHeight = 50;
 constexpr int kBarHeight = 14;
 
-// From left to right, with the numbers at its ends and in its middle.
+// Draws a colour bar from left to right, with numbers at its ends and in its middle.
 void draw_scale(const Scale& scale, int left, int top, int width, Image& picture) {
   const int bar_width = width * 3 / 4;
   const int bar_left = left + (width - bar_width) / 2;

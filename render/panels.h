@@ -1,4 +1,4 @@
-// Pictures side by side, with titles, notes and colour bars.
+// Arrangement of pictures side by side, with titles, notes and colour bars.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace triglyph {
 
-// What the colours of a heat map mean: 0 .. greatest, or -greatest .. greatest if signed.
+// The scale of a heat map: 0 .. greatest, or -greatest .. greatest if signed.
 struct Scale {
   double greatest = 0;
   bool is_signed = false;
@@ -17,18 +17,18 @@ struct Scale {
 
 struct Panel {
   std::string title;
-  std::string note;  // below the picture, if there is no scale
+  std::string note;  // below the picture, instead of a scale
   Image image;
   std::optional<Scale> scale;
 };
 
-// How many columns so many panels stand in: 1, 2, 3 in a row, 4 as 2 x 2, more in rows of 3.
+// Returns the number of columns: up to 3 panels stand in one row, 4 as 2 x 2, more in rows of 3.
 [[nodiscard]] int columns_of(std::size_t panels);
 
-// "0.0387", "1.2e-07": three digits, as labels show numbers.
+// Returns a number with three digits for labels ("0.0387", "1.2e-07").
 [[nodiscard]] std::string short_number(double value);
 
-// Precondition: at least one panel. Cells are as large as the largest panel.
+// Draws the panels in cells as large as the largest of them. Precondition: at least one panel.
 [[nodiscard]] Image arrange(const std::vector<Panel>& panels, const Colour& background);
 
 }  // namespace triglyph

@@ -1,4 +1,4 @@
-// The figures of the paper: a model as it is, marked without and with optimisation.
+// The figures of the paper: a model, and its mark without and with optimisation.
 // Wang & Hu, CAGD 27 (2010), figures 6 to 8.
 #pragma once
 
@@ -8,10 +8,10 @@
 
 namespace triglyph {
 
-// Marks the mesh both ways, every unit carrying a part of its own (the paper's experiment, trial
-// key), and draws three panels: the original, the un-optimised and the optimised mark, with units
-// shown as the paper does: facets (tsq), moved points (aie), balls (iie). Throws Error Usage for an
-// unknown scheme or a mesh without faces. O of two markings.
+// Fills the mesh (the paper's experiment, with the trial key) with and without optimisation, and
+// draws three panels: the original, the un-optimised and the optimised mark. Units are shown as in
+// the paper: as facets (tsq), moved points (aie) or balls (iie). Throws Error Usage for an unknown
+// scheme or a mesh without faces. Costs two markings.
 [[nodiscard]] Image draw_paper_figure(const Mesh& mesh, const std::string& scheme,
                                       const PictureOptions& options);
 

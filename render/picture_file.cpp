@@ -36,7 +36,7 @@ std::uint8_t byte_of(float share) {
   return static_cast<std::uint8_t>(std::lround(std::clamp(share, 0.0F, 1.0F) * 255.0F));
 }
 
-// 8 bits a channel, not premultiplied, as PNG wants it.
+// Returns 8 bits per channel, not premultiplied, as PNG stores them.
 std::vector<std::uint8_t> bytes_of(const Image& picture, bool with_alpha) {
   std::vector<std::uint8_t> bytes;
   bytes.reserve(picture.pixels().size() * 4);
@@ -51,7 +51,7 @@ std::vector<std::uint8_t> bytes_of(const Image& picture, bool with_alpha) {
   return bytes;
 }
 
-// A file's bytes as OpenImageIO collects them in memory.
+// Returns the bytes of the picture file.
 std::vector<unsigned char> encode(const Image& picture, const std::filesystem::path& path) {
   const std::string extension = extension_of(path);
   const bool is_exr = extension == ".exr";

@@ -43,7 +43,7 @@ void commit(RTCGeometry geometry, SceneHandle& scene) {
   rtcCommitScene(scene.handle);
 }
 
-// A packet of parallel rays and what they meet.
+// A packet of parallel rays and their hits.
 struct Packet {
   alignas(64) std::array<int, kLanes> valid{};
   alignas(64) RTCRayHit16 rays{};
@@ -53,14 +53,14 @@ struct Packet {
   }
 };
 
-// Where in a pixel sample i lies: a low-discrepancy sequence, the same in every pixel.
+// Returns the position of sample i in a pixel: a low-discrepancy sequence, the same in every pixel.
 std::array<double, 2> place_in_pixel(int i) {
   const double x = 0.5 + i * 0.7548776662466927;
   const double y = 0.5 + i * 0.5698402909980532;
   return {x - std::floor(x), y - std::floor(y)};
 }
 
-// A lamp far away, in the camera's axes.
+// A directional light in the axes of the camera.
 struct Lamp {
   Vec3 from;
   float strength;
@@ -73,7 +73,8 @@ const std::array<Lamp, 3>& lamps() {
   return all;
 }
 
-// The light a dull surface sends to the viewer, with a faint gloss. Normal in the camera's axes.
+// Returns the light that a diffuse surface with a faint gloss reflects to the viewer. The normal is
+// in the axes of the camera.
 Colour lit(const Colour& paint, Vec3 normal) {
   if (normal[2] < 0) normal *= -1.0;  // back sides look like front sides
   float light = 0.16F + 0.08F * static_cast<float>(normal[1]);
@@ -91,7 +92,7 @@ Colour lit(const Colour& paint, Vec3 normal) {
 struct RayCaster::Tracer {
   const Scene& scene;
   Vec3 centre{0, 0, 0};
-  double scale = 1;  // Embree units a model unit
+  double scale = 1;  // Embree units per model unit
   SceneHandle surface, dots, balls;
 
   explicit Tracer(const Scene& seen) : scene(seen) {
@@ -150,12 +151,12 @@ struct RayCaster::Tracer {
             dot(direction, camera.towards_viewer())};
   }
 
-  // The rays of samples first .. first + 15 of a pixel.
+  // Returns the rays of samples first .. first + 15 of a pixel.
   void aim(const Camera& camera, int width, int height, int x, int y, int first, int samples,
            Packet& packet) const {
     const double pixel = 2 * camera.half_height / height;
     const Vec3 towards = camera.towards_viewer();
-    const double away = 4 / scale + (camera.centre - centre).norm();  // outside of everything
+    const double away = 4 / scale + (camera.centre - centre).norm();  // outside the scene
     const Vec3 start = camera.centre + towards * std::min(camera.reach, away);
     for (int lane = 0; lane < kLanes; ++lane) {
       packet.valid[static_cast<std::size_t>(lane)] = first + lane < samples ? -1 : 0;
@@ -188,7 +189,7 @@ struct RayCaster::Tracer {
     rtcIntersect16(packet.valid.data(), target.handle, &context, &packet.rays);
   }
 
-  // Colour and light of the surface where a lane met it.
+  // Returns the colour of the lit surface where a lane hit it.
   [[nodiscard]] Colour surface_colour(const Packet& packet, int lane, const Camera& camera) const {
     const std::uint32_t face = packet.rays.hit.primID[lane];
     const double u = packet.rays.hit.u[lane];
@@ -220,7 +221,7 @@ struct RayCaster::Tracer {
     return colour;
   }
 
-  // Nearer to a side than half the width of an edge?
+  // Returns whether a hit is nearer to a side than half the width of a drawn edge.
   [[nodiscard]] bool is_on_edge(const Triangle& corners,
                                 const std::array<double, 3>& shares) const {
     const auto& at = scene.mesh.positions;
@@ -257,7 +258,7 @@ struct RayCaster::Tracer {
         Colour colour{0, 0, 0, 0};
         float depth = std::numeric_limits<float>::infinity();
         if (met.hits(lane)) {
-          // neighbours in a pixel that meet one face look alike, unless edges are drawn
+          // samples of a pixel that hit one face look alike, unless edges are drawn
           if (met.rays.hit.primID[lane] != last_face || scene.edge_width > 0) {
             last_face = met.rays.hit.primID[lane];
             last = surface_colour(met, lane, camera);

@@ -1,5 +1,5 @@
-// Draws a scene by casting rays: Embree finds what a ray meets, in single precision relative to the
-// scene's box. The same pixels for any number of threads.
+// Ray casting of a scene with Embree, in single precision relative to the scene's bounding box. The
+// pixels are the same for any number of threads.
 #pragma once
 
 #include <memory>
@@ -12,12 +12,12 @@ namespace triglyph {
 
 class RayCaster {
  public:
-  // Keeps a view of the scene, which must outlive it. O(triangles log triangles), parallel.
+  // `scene` must outlive the caster. O(triangles log triangles), parallel.
   explicit RayCaster(const Scene& scene);
   ~RayCaster();
 
-  // Every pixel is the mean of so many samples; what no ray meets is transparent.
-  // O(pixels * samples * log triangles).
+  // Returns an image whose pixels are means of `samples` rays each; a ray that hits nothing is
+  // transparent. O(pixels * samples * log triangles).
   [[nodiscard]] Image draw(const Camera& camera, int width, int height, int samples) const;
 
  private:

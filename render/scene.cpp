@@ -8,7 +8,7 @@
 namespace triglyph {
 namespace {
 
-// Twice the area long.
+// Returns the normals of the faces, with lengths of twice their areas.
 std::vector<Vec3> area_normals(const Mesh& mesh) {
   std::vector<Vec3> normals(mesh.triangles.size());
   parallel_for(

@@ -1,4 +1,4 @@
-// What is seen in a picture: a surface with colours, dots and balls.
+// The contents of a picture: a coloured surface, dots and balls.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace triglyph {
 
-// Angle between faces above which an edge is drawn as an edge and not rounded off, degrees.
+// Smooth shading keeps edges whose faces differ by more than this angle, in degrees.
 inline constexpr double kCreaseDegrees = 40;
 
 struct Ball {
@@ -21,21 +21,23 @@ struct Ball {
 
 struct Scene {
   const Mesh& mesh;                   // must outlive the scene
-  std::vector<Vec3> normals;          // one a face (flat) or three (smooth), unit length
-  std::vector<Colour> face_colours;   // one a face; empty: clay
-  std::vector<Colour> point_colours;  // one a point, linear between; instead of those
-  std::vector<Ball> dots;             // solid, in the mark's colour
+  std::vector<Vec3> normals;          // one per face (flat) or three (smooth), unit length
+  std::vector<Colour> face_colours;   // one per face; empty: clay
+  std::vector<Colour> point_colours;  // one per point, interpolated; replaces face_colours
+  std::vector<Ball> dots;             // opaque, in the mark's colour
   std::vector<Ball> balls;            // translucent, green
   double edge_width = 0;              // of drawn edges, model units; 0: none
 
-  // A surface of clay.
+  // Starts with a clay surface and nothing else.
   Scene(const Mesh& seen, bool is_flat);
 };
 
+// Returns the unit normals of the faces. O(triangles).
 [[nodiscard]] std::vector<Vec3> flat_normals(const Mesh& mesh);
 
-// Three a face: the mean of the normals around a corner, by area, of the faces that do not turn
-// away from this one by more than the crease angle. O(triangles * valence).
+// Returns three unit normals per face: for each corner the mean, weighted by area, of the normals
+// of the faces around it that differ from this face's by at most the crease angle. O(triangles *
+// valence).
 [[nodiscard]] std::vector<Vec3> smooth_normals(const Mesh& mesh);
 
 }  // namespace triglyph
