@@ -88,10 +88,9 @@ OptionTable<Options> make_table() {
                              "Local change of the surface that the assignment minimises"),
       count_option<Options>("redundancy", &Options::redundancy, {0, 1e6}, "units", "32",
                             "Units wanted for each part of the message; 0: as many as there are"),
-      number_option<Options>(
-          "max_move", &Options::max_move_percent, {0, 100}, "percent of the diagonal",
-          "the scheme's",
-          "Farthest move of a point beyond which parts get fewer units; 0: no limit"),
+      number_option<Options>("max_move", &Options::max_move_percent, {0, 100},
+                             "percent of the diagonal", "the scheme's",
+                             "Move of a point beyond which parts get fewer units; 0: no limit"),
       number_option<Options>("drop_dearest", &Options::drop_dearest_percent, {0, 99.9}, "percent",
                              "0",
                              "Share of the candidates to leave out, the most expensive ones first: "
