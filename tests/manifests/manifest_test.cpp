@@ -129,7 +129,7 @@ TEST(Manifest, RefusesValuesThatCannotBe) {
   refuses("\"radius_edges\": 4", "no option of scheme tsq");
   refuses("\"scheme\": \"iie\", \"step\": 0.5", "\"step\"");
   refuses("\"subscript_bits\": 2", "subscript bits");
-  refuses("\"detail\": 1", "\"detail\" is true or false");
+  refuses("\"detail\": 1", "\"detail\" must be true or false");
   EXPECT_EQ(message("\"message\": \"a\", \"fill\": false"), "");
 }
 
