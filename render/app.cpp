@@ -141,9 +141,9 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->type_name("MESH");
   app.add_option("--out", arguments.out, "Picture to write: .png, .jpg or .exr")->type_name("FILE");
   auto* panels = app.add_option("--panels", arguments.panels,
-                                "1 to 6 panels, separated by commas: " +
+                                "1 to 6 panels, separated by commas:\n" +
                                     CLI::detail::join(strings(panel_names()), ", ") +
-                                    " (default: original,facets,distance,worst)")
+                                    "\n(default: original,facets,distance,worst)")
                      ->delimiter(',')
                      ->check(CLI::IsMember(strings(panel_names())).description(""))
                      ->type_name("NAME");
