@@ -9,8 +9,8 @@
 
 namespace triglyph {
 
-// Units that interfere with each unit, a neighbour counting once for every shared point.
-// O(sum of degrees).
+// Units that interfere with each unit, a neighbour counting once for every shared point, and the
+// unit itself too. O(total size of the units' lists of points).
 [[nodiscard]] std::vector<std::uint32_t> degrees_of(const Conflicts& conflicts);
 
 // Takes the units in this order, each if it interferes with none taken before. Ascending result.
