@@ -243,6 +243,28 @@ TEST(Mark, DoesNotDependOnThreads) {
   });
 }
 
+// Coarse numbers spoil some units: these are taken back, and all that are left read their word.
+TEST_P(EverySchemesMark, EveryCarrierReadsItsWordWithMargin) {
+  const test::Solid& ball = ball_for(options_);
+  const double step = 2e-5 * (options_.scheme == "iie" ? 10 : 1);
+  const auto coarse = [&](const Vec3& p) {
+    return Vec3(std::round(p[0] / step), std::round(p[1] / step), std::round(p[2] / step)) * step;
+  };
+  const Marking marking = mark(ball.surface(), kMessage, Key::trial(), options_, coarse, step);
+  EXPECT_GT(marking.units_dropped, 0U);
+  ASSERT_GT(marking.carriers.size(), 50U);
+  const Mesh marked{marking.positions, ball.mesh.triangles};
+  const auto readings = read(marked, Key::trial(), options_).readings;
+  for (const Carrier& carrier : marking.carriers) {
+    const auto at = std::lower_bound(
+        readings.begin(), readings.end(), carrier.anchor,
+        [](const Reading& reading, std::uint32_t a) { return reading.anchor < a; });
+    ASSERT_TRUE(at != readings.end() && at->anchor == carrier.anchor);
+    EXPECT_EQ(at->word, marking.words[carrier.word]);
+    EXPECT_LE(at->worst_offset, 0.5);
+  }
+}
+
 TEST(Settle, TakesBackWhatFlipsAFace) {
   const Mesh sheet = test::flat_grid(4, 4);
   std::vector<Vec3> after = sheet.positions;

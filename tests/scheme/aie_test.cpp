@@ -151,6 +151,26 @@ TEST(Aie, NoUnitIsReadTwice) {
   }
 }
 
+// With nested groupings one reading of an edge may count in place of the other, which was not asked
+// for.
+TEST(Aie, ReadAtFindsOfNestedGroupingsTheOneThatReadFinds) {
+  const MarkOptions options = options_with(AieGroups::All);
+  const test::Solid marked(marked_ball(options));
+  const auto scheme =
+      make_scheme("aie", WordCode(Key::trial(), options.format), options.scheme_options);
+  const auto bound = scheme->bind(marked.surface());
+  const std::vector<Reading> all = bound->read();
+  std::vector<std::uint32_t> found, others;  // anchors
+  for (const Reading& reading : all) found.push_back(reading.anchor);
+  for (const std::uint32_t anchor : found) {
+    const std::uint32_t other = anchor ^ 1;
+    if (!std::binary_search(found.begin(), found.end(), other)) others.push_back(other);
+  }
+  ASSERT_GT(others.size(), 100U);
+  EXPECT_TRUE(bound->read_at(others).empty());
+  EXPECT_EQ(bound->read_at(found).size(), all.size());
+}
+
 // A group of several points outlives the loss of some of them: as large a share of the points that
 // carry the mark is damaged, and a larger share of the units still agrees.
 TEST(Aie, AllNeighboursOutliveDamageThatOneDoesNot) {
