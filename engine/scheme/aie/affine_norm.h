@@ -44,6 +44,12 @@ class AffineNorm {
   // Eberly. Distance from a point to an ellipse, an ellipsoid, or a hyperellipsoid (2013).
   [[nodiscard]] Vec3 nearest_with_norm(const Vec3& point, double value) const;
 
+  // Returns a lower bound on the distance between a point of the one norm and a point of the other,
+  // model units: nowhere does the norm change faster than along the axis of least deviation.
+  [[nodiscard]] double least_distance(double one_norm, double other_norm) const {
+    return std::abs(one_norm - other_norm) * deviations_[dimensions_ - 1];
+  }
+
   // Returns the distance of a point from the plane of a plane basis, in greatest deviations.
   [[nodiscard]] double height(const Vec3& point) const;
 

@@ -31,6 +31,8 @@ constexpr double kMaxHeight = 1e-3;
 // Greatest move in greatest deviations of the basis: one as far as the basis is wide would be seen,
 // and would flip a face as a rule.
 constexpr double kMaxMove = 1;
+// Factor of a lower bound on a distance: rounding takes far less from the distance.
+constexpr double kSurely = 1 - 1e-6;
 // A group holds a quarter of the word and has a table of costs for all its values: 2^8 at most.
 constexpr int kMaxWordBits = 32;
 
@@ -133,13 +135,17 @@ AieScheme::GroupBits AieScheme::deal_out(const Word& word) const {
 std::optional<Vec3> AieScheme::place(const Site& site, std::size_t group, const Vec3& point,
                                      std::uint32_t bits) const {
   const Quantiser& quantiser = channels_[group].quantiser(site.norm);
-  const double value = std::log(site.norm(point));
+  const double norm = site.norm(point);
+  const double value = std::log(norm);
   if (!std::isfinite(value)) return std::nullopt;
   const double near = quantiser.nearest_centre(value, bits);
   std::optional<Vec3> best;
   double best_move = site.reach;
   for (const double centre : {near, quantiser.second_centre(value, near)}) {
-    const Vec3 target = site.norm.nearest_with_norm(point, std::exp(centre));
+    const double wanted = std::exp(centre);
+    // most second cells end here, before their dear nearest point
+    if (!(kSurely * site.norm.least_distance(norm, wanted) < best_move)) continue;
+    const Vec3 target = site.norm.nearest_with_norm(point, wanted);
     const double move = (target - point).norm();
     if (!(move < best_move)) continue;
     best_move = move;
