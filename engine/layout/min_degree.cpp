@@ -62,7 +62,7 @@ std::vector<std::uint32_t> min_degree_layout(const Conflicts& conflicts,
   // to be told apart.
   BucketQueue queue(degrees_of(conflicts));
   std::vector<char> present(conflicts.size(), 1);
-  std::vector<std::uint32_t> lost(conflicts.size(), 0);  // degrees lost in this round
+  std::vector<std::uint32_t> lost(conflicts.size(), 0);             // degrees lost in this round
   std::vector<std::uint32_t> gone_from(conflicts.list_count(), 0);  // units dropped in this round
   std::vector<std::uint32_t> chosen, dropped, lists, touched;
   for (std::uint32_t unit = queue.front(); unit != kNobody; unit = queue.front()) {
