@@ -37,22 +37,37 @@ class Conflicts {
     return (*moved_)[unit];
   }
 
+  // Returns the number of lists of units by point: the movers of each, and its readers where these
+  // differ. Units interfere if the same list names them.
+  [[nodiscard]] std::size_t list_count() const { return moved_ == read_ ? points() : 2 * points(); }
+
+  // Returns the units on a list, ascending. Precondition: list < list_count().
+  [[nodiscard]] std::span<const std::uint32_t> units_on(std::uint32_t list) const {
+    const auto count = static_cast<std::uint32_t>(points());
+    if (list >= count) return movers_[list - count];
+    return moved_ == read_ ? movers_[list] : readers_[list];
+  }
+
+  // Calls visit(list) for the lists that name the units which interfere with `unit`; each of them
+  // names `unit` too.
+  template <typename Visit>
+  void for_each_list(std::uint32_t unit, const Visit& visit) const {
+    for (const std::uint32_t point : (*moved_)[unit]) visit(point);
+    if (moved_ == read_) return;
+    const auto count = static_cast<std::uint32_t>(points());
+    for (const std::uint32_t point : (*read_)[unit]) visit(count + point);
+  }
+
   // Calls visit(j) for every unit j that interferes with `unit`, possibly several times, and for
   // `unit` itself.
   template <typename Visit>
   void for_each_neighbour(std::uint32_t unit, const Visit& visit) const {
-    for (const std::uint32_t point : (*moved_)[unit]) {
-      for (const std::uint32_t other : readers()[point]) visit(other);
-    }
-    if (moved_ == read_) return;
-    for (const std::uint32_t point : (*read_)[unit]) {
-      for (const std::uint32_t other : movers_[point]) visit(other);
-    }
+    for_each_list(unit, [&](std::uint32_t list) {
+      for (const std::uint32_t other : units_on(list)) visit(other);
+    });
   }
 
  private:
-  [[nodiscard]] const PointLists& readers() const { return moved_ == read_ ? movers_ : readers_; }
-
   const PointLists* moved_;
   const PointLists* read_;
   PointLists movers_;   // of each point, the units that move it

@@ -63,7 +63,9 @@ std::vector<std::uint32_t> min_degree_layout(const Conflicts& conflicts,
   BucketQueue queue(degrees_of(conflicts));
   std::vector<char> present(conflicts.size(), 1);
   std::vector<std::uint32_t> lost(conflicts.size(), 0);  // degrees lost in this round
-  std::vector<std::uint32_t> chosen, dropped, touched;
+  // units dropped in this round, by list
+  std::vector<std::uint32_t> gone_from(conflicts.list_count(), 0);
+  std::vector<std::uint32_t> chosen, dropped, lists, touched;
   for (std::uint32_t unit = queue.front(); unit != kNoUnit; unit = queue.front()) {
     chosen.push_back(unit);
     present[unit] = 0;
@@ -75,11 +77,22 @@ std::vector<std::uint32_t> min_degree_layout(const Conflicts& conflicts,
       queue.remove(other);
       dropped.push_back(other);
     });
+    // Units dropped together are near each other and share lists: each list is traversed once for
+    // all of them.
     for (const std::uint32_t removed : dropped) {
-      conflicts.for_each_neighbour(removed, [&](std::uint32_t other) {
-        if (present[other] != 0 && lost[other]++ == 0) touched.push_back(other);
+      conflicts.for_each_list(removed, [&](std::uint32_t list) {
+        if (gone_from[list]++ == 0) lists.push_back(list);
       });
     }
+    for (const std::uint32_t list : lists) {
+      for (const std::uint32_t other : conflicts.units_on(list)) {
+        if (present[other] == 0) continue;
+        if (lost[other] == 0) touched.push_back(other);
+        lost[other] += gone_from[list];
+      }
+      gone_from[list] = 0;
+    }
+    lists.clear();
     for (const std::uint32_t other : touched) {
       queue.decrease(other, lost[other]);
       lost[other] = 0;

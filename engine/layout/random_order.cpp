@@ -13,8 +13,9 @@ std::vector<std::uint32_t> degrees_of(const Conflicts& conflicts) {
   parallel_for(
       conflicts.size(),
       [&](std::size_t i) {
-        conflicts.for_each_neighbour(static_cast<std::uint32_t>(i),
-                                     [&](std::uint32_t) { ++degrees[i]; });
+        conflicts.for_each_list(static_cast<std::uint32_t>(i), [&](std::uint32_t list) {
+          degrees[i] += static_cast<std::uint32_t>(conflicts.units_on(list).size());
+        });
       },
       kBlock);
   return degrees;

@@ -10,7 +10,7 @@
 namespace triglyph {
 
 // Returns the degree of every unit; a neighbour counts once for every shared point, and so does the
-// unit itself. O(sum of degrees), parallel.
+// unit itself. O(total size of the units' lists of points).
 [[nodiscard]] std::vector<std::uint32_t> degrees_of(const Conflicts& conflicts);
 
 // Returns the units, ascending, that a first fit takes in this order: each that does not interfere

@@ -11,34 +11,56 @@ namespace {
 // rounding of the same size.
 constexpr float kMaxOffset = 0.5F;
 
-constexpr std::uint32_t kNobody = 0xffffffff;
+constexpr std::uint32_t kNoPlacement = 0xffffffff;
 
-// The placements that still stand, and who moved which point.
-class Placed {
+constexpr std::size_t kPlacementsPerTask = 64;  // rounding a unit's points takes a microsecond
+
+// Which placements the positions still embed, and which of them moved which point.
+class EmbeddedPlacements {
  public:
-  Placed(const Surface& surface, const UnitSet& units, std::span<const Placement> placements,
-         std::vector<Vec3>& positions)
+  EmbeddedPlacements(const Surface& surface, const UnitSet& units,
+                     std::span<const Placement> placements, std::vector<Vec3>& positions)
       : surface_(surface),
         units_(units),
         placements_(placements),
         positions_(positions),
-        stands_(placements.size(), 1),
-        owner_(surface.mesh.positions.size(), kNobody) {
+        embedded_(placements.size(), 1),
+        mover_(surface.mesh.positions.size(), kNoPlacement) {
     for (std::uint32_t i = 0; i < placements.size(); ++i) {
-      for (const std::uint32_t point : moved(i)) owner_[point] = i;
+      for (const std::uint32_t point : moved(i)) mover_[point] = i;
     }
   }
 
-  [[nodiscard]] bool stands(std::uint32_t placement) const { return stands_[placement] != 0; }
-  [[nodiscard]] std::span<const std::uint32_t> moved(std::uint32_t placement) const {
-    return units_.moved[placements_[placement].unit];
+  // By ascending anchor.
+  [[nodiscard]] std::vector<Carrier> carriers() const {
+    std::vector<Carrier> carriers;
+    for (std::uint32_t i = 0; i < placements_.size(); ++i) {
+      if (is_embedded(i)) carriers.push_back({anchor(i), placements_[i].word});
+    }
+    return carriers;
   }
 
+  // Takes every moved point to the nearest that the output can hold.
+  void round_moved(const Rounding& round) {
+    parallel_for(
+        placements_.size(),
+        [&](std::size_t i) {
+          const auto placement = static_cast<std::uint32_t>(i);
+          if (!is_embedded(placement)) return;
+          for (const std::uint32_t point : moved(placement)) {
+            Vec3& position = positions_[point];
+            if (position != surface_.mesh.positions[point]) position = round(position);
+          }
+        },
+        kPlacementsPerTask);
+  }
+
+  // Puts the points of a unit back where the surface has them.
   void take_back(std::uint32_t placement) {
-    stands_[placement] = 0;
+    embedded_[placement] = 0;
     for (const std::uint32_t point : moved(placement)) {
       positions_[point] = surface_.mesh.positions[point];
-      owner_[point] = kNobody;
+      mover_[point] = kNoPlacement;
     }
   }
 
@@ -50,19 +72,48 @@ class Placed {
       if (flipped.empty()) return;
       for (const std::uint32_t triangle : flipped) {
         for (const std::uint32_t point : surface_.mesh.triangles[triangle]) {
-          if (owner_[point] != kNobody) take_back(owner_[point]);
+          if (mover_[point] != kNoPlacement) take_back(mover_[point]);
         }
       }
     }
   }
 
+  // Takes back every unit that does not read its word with margin, from the positions as they are
+  // before any of these is taken back.
+  void take_back_misread(const BoundScheme& scheme, std::span<const Word> words) {
+    std::vector<std::uint32_t> anchors;
+    for (const Carrier& carrier : carriers()) anchors.push_back(carrier.anchor);
+    const Mesh settled{positions_, surface_.mesh.triangles};
+    const std::vector<Reading> readings =
+        scheme.moved_to({settled, surface_.halfedges})->read_at(anchors);
+    auto reading = readings.begin();
+    for (std::uint32_t i = 0; i < placements_.size(); ++i) {
+      if (!is_embedded(i)) continue;
+      const bool shows_marker = reading != readings.end() && reading->anchor == anchor(i);
+      const bool carries_word = shows_marker && reading->word == words[placements_[i].word] &&
+                                reading->worst_offset <= kMaxOffset;
+      if (shows_marker) ++reading;
+      if (!carries_word) take_back(i);
+    }
+  }
+
  private:
+  [[nodiscard]] bool is_embedded(std::uint32_t placement) const {
+    return embedded_[placement] != 0;
+  }
+  [[nodiscard]] std::uint32_t anchor(std::uint32_t placement) const {
+    return units_.anchors[placements_[placement].unit];
+  }
+  [[nodiscard]] std::span<const std::uint32_t> moved(std::uint32_t placement) const {
+    return units_.moved[placements_[placement].unit];
+  }
+
   const Surface& surface_;
   const UnitSet& units_;
   std::span<const Placement> placements_;
   std::vector<Vec3>& positions_;
-  std::vector<char> stands_;
-  std::vector<std::uint32_t> owner_;
+  std::vector<char> embedded_;
+  std::vector<std::uint32_t> mover_;
 };
 
 }  // namespace
@@ -88,46 +139,13 @@ void settle(const Surface& surface, const BoundScheme& scheme, const UnitSet& un
             std::span<const Placement> placements, const Rounding& round, Marking& marking) {
   Embedding embedding = scheme.embed(units, placements, marking.words);
   marking.positions = std::move(embedding.positions);
-  marking.carriers.clear();
-  Placed placed(surface, units, placements, marking.positions);
-  for (const std::uint32_t failed : embedding.failed) placed.take_back(failed);
-  parallel_for(
-      placements.size(),
-      [&](std::size_t i) {
-        const auto placement = static_cast<std::uint32_t>(i);
-        if (!placed.stands(placement)) return;
-        for (const std::uint32_t point : placed.moved(placement)) {
-          Vec3& position = marking.positions[point];
-          if (position != surface.mesh.positions[point]) position = round(position);
-        }
-      },
-      64);
-  placed.take_back_flips();
-
-  // read what stands there now; readings and placements are both sorted by anchor
-  const Mesh settled{marking.positions, surface.mesh.triangles};
-  const std::vector<Reading> readings = scheme.moved_to({settled, surface.halfedges})->read();
-  auto reading = readings.begin();
-  for (std::uint32_t i = 0; i < placements.size(); ++i) {
-    const std::uint32_t anchor = units.anchors[placements[i].unit];
-    while (reading != readings.end() && reading->anchor < anchor) ++reading;
-    if (!placed.stands(i)) continue;
-    const bool reads = reading != readings.end() && reading->anchor == anchor &&
-                       reading->word == marking.words[placements[i].word] &&
-                       reading->worst_offset <= kMaxOffset;
-    if (reads) {
-      marking.carriers.push_back({anchor, placements[i].word});
-    } else {
-      placed.take_back(i);
-    }
-  }
-  placed.take_back_flips();
-  std::erase_if(marking.carriers, [&](const Carrier& carrier) {
-    const auto at = std::lower_bound(
-        placements.begin(), placements.end(), carrier.anchor,
-        [&](const Placement& p, std::uint32_t anchor) { return units.anchors[p.unit] < anchor; });
-    return !placed.stands(static_cast<std::uint32_t>(at - placements.begin()));
-  });
+  EmbeddedPlacements embedded(surface, units, placements, marking.positions);
+  for (const std::uint32_t failed : embedding.failed) embedded.take_back(failed);
+  embedded.round_moved(round);
+  embedded.take_back_flips();
+  embedded.take_back_misread(scheme, marking.words);
+  embedded.take_back_flips();
+  marking.carriers = embedded.carriers();
   marking.units_dropped = static_cast<std::uint32_t>(placements.size() - marking.carriers.size());
 }
 

@@ -1,4 +1,4 @@
-// Fills a cost matrix by units, as schemes work costs out, though it is stored by words.
+// Fills a cost matrix unit by unit, as schemes compute costs, although it is stored word by word.
 #pragma once
 
 #include <algorithm>
@@ -11,9 +11,9 @@
 
 namespace triglyph {
 
-// The costs of `units` rows and `words` columns; fill_row(row, costs) sets those of one unit, which
-// are infeasible until then. A block of rows is written at once, whole cache lines of a column at a
-// time. Parallel; fill_row must be safe to call for several rows at a time. O(units * words).
+// Returns a matrix of `units` rows and `words` columns. fill_row(row, costs) sets the costs of one
+// unit, which are infeasible until then; it is called in parallel, once for each row. A block of
+// rows is written at once, whole cache lines of a column at a time. O(units * words).
 template <typename FillRow>
 CostMatrix fill_cost_rows(std::size_t units, std::size_t words, const FillRow& fill_row) {
   constexpr std::size_t kRows = 16;  // floats of a cache line

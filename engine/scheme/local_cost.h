@@ -1,9 +1,9 @@
-// What a local change of the surface costs: the quantity that assignment minimises. A unit is cut
-// into parts that move on their own (TSQ: M and three apexes, AIE: four groups, IIE: the cap); a
-// part is weighed alone, the others where they were, and the parts are combined.
+// The cost of a local change of the surface, which assignment minimises. A unit consists of parts
+// that move on their own (TSQ: M and three apexes, AIE: four groups, IIE: the cap). Each part is
+// weighed alone, as if the others had not moved, and the costs of the parts are combined.
 //
-// To add a function: name it in CostFunction and kCostNames, give it a case in of_part() and, if
-// parts do not combine by their maximum, in combine(). Schemes need no change.
+// To add a function, name it in CostFunction and kCostNames, give it a case in of_part() and, if
+// the parts do not combine by their maximum, in combine(). Schemes need no change.
 #pragma once
 
 #include <algorithm>
@@ -25,21 +25,25 @@ struct Move {
 
 class LocalCost {
  public:
-  // The surface must outlive the cost. Hausdorff builds a spatial index: O(t log t).
+  // The surface must outlive the cost. For Hausdorff a spatial index is built, O(t log t) for t
+  // triangles.
   LocalCost(const Surface& surface, CostFunction function);
 
-  // Model units; for rms their squares, added up. O(moves * valence).
+  // Returns the cost of moving these points, model units; under Rms the sum of the squared moves.
+  // O(moves) for Displacement and Rms, O(moves * valence) for the others.
   [[nodiscard]] float of_part(std::span<const Move> moves) const;
 
-  // Is the cost of a part that moves one point by this distance known from the distance alone?
+  // Says whether the cost of moving a single point depends on the distance alone.
   [[nodiscard]] bool goes_by_distance() const {
     return function_ == CostFunction::Displacement || function_ == CostFunction::Rms;
   }
+  // Returns the cost of moving a single point by this distance, model units. Precondition:
+  // goes_by_distance().
   [[nodiscard]] float of_distance(float distance) const {
     return function_ == CostFunction::Rms ? distance * distance : distance;
   }
 
-  // Of a unit from its parts, which move so many points. Model units.
+  // Returns the cost of a unit, model units, from those of its parts, which move so many points.
   [[nodiscard]] float combine(std::span<const float> parts, std::size_t points) const {
     if (function_ != CostFunction::Rms) return *std::max_element(parts.begin(), parts.end());
     float sum = 0;

@@ -1,7 +1,7 @@
-// The schemes by name. Code outside a scheme's folder knows its options as values by key only.
+// The schemes by name. Code outside a scheme's folder knows its options only as values by key.
 //
-// To add a scheme: give it a folder with its options and its class, and add it to kSchemes in
-// registry.cpp and to the source lists of engine/scheme and tests/scheme.
+// To add a scheme, give it a folder with its options and its class, and add it to kNames and
+// schemes() in registry.cpp and to the source lists of engine/scheme and tests/scheme.
 #pragma once
 
 #include <memory>
@@ -16,13 +16,13 @@
 
 namespace triglyph {
 
-// What a scheme uses where the user says nothing: for a message, or for the paper's experiment, in
-// which every unit carries a part of its own and cells need only survive rounding.
+// The defaults of a scheme: for a message, or for the paper's experiment (--fill), in which every
+// unit carries a part of its own and cells need only survive rounding.
 struct SchemeDefaults {
   WordFormat format;     // with fill, its subscript bits are the most that are used
   OptionValues options;  // every option of the scheme
-  // Units are scarce: it pays to search long for more of them, and all are wanted, even those that
-  // move farther.
+  // Says whether units are scarce: it then pays to search long for more of them, and all are used,
+  // even those that move farther.
   bool has_few_units = false;
 };
 
@@ -30,19 +30,20 @@ struct SchemeInfo {
   std::string_view name;
   std::vector<OptionSpec> options;
   SchemeDefaults (*defaults)(bool fill);
-  // Throws Error Usage for options out of range or a word that does not fit a unit. Options that
-  // are not named take their defaults for a message.
+  // Makes the scheme; options that are not named take their defaults for a message. Throws Error
+  // Usage for options out of range or a word that does not fit a unit.
   std::unique_ptr<Scheme> (*make)(const WordCode& code, const OptionValues& options,
                                   CostFunction cost);
 };
 
-// "tsq": similarity invariant; "aie": affine invariant; "iie": noise robust.
+// Returns the names of the schemes: "tsq" (invariant under similarities), "aie" (under affine
+// maps), "iie" (robust against noise).
 [[nodiscard]] std::span<const std::string_view> scheme_names();
 
-// Throws Error Usage for an unknown name.
+// Returns what is known of a scheme. Throws Error Usage for an unknown name.
 [[nodiscard]] const SchemeInfo& scheme_info(std::string_view name);
 
-// Throws Error Usage for an unknown name, and as SchemeInfo::make does.
+// Makes a scheme by name. Throws Error Usage for an unknown name, and as SchemeInfo::make does.
 [[nodiscard]] std::unique_ptr<Scheme> make_scheme(std::string_view name, const WordCode& code,
                                                   const OptionValues& options,
                                                   CostFunction cost = CostFunction::Displacement);
@@ -50,11 +51,12 @@ struct SchemeInfo {
 // Returns a number among the values, or `otherwise`.
 [[nodiscard]] double number_in(const OptionValues& values, std::string_view key, double otherwise);
 
-// Parts whose second best value a reader tries; 0 for schemes that know nothing of it.
+// Returns the number of parts whose second best value a reader tries; 0 for schemes without that
+// option.
 [[nodiscard]] int doubtful_parts(const OptionValues& options);
 
-// Returns the options with sizes that are relative to the mesh made absolute: they then mean the
-// same for the marked mesh to the last bit. O(triangles).
+// Returns the options with the sizes that are relative to the mesh made absolute, so that they
+// mean the same for the marked mesh to the last bit. O(triangles).
 [[nodiscard]] OptionValues fixed_for(const Mesh& mesh, OptionValues options);
 
 }  // namespace triglyph

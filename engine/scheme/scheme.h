@@ -1,9 +1,13 @@
-// What the engine asks of an embedding scheme: to be bound to a surface, and then a few calls on
-// whole batches, so that the interface costs nothing and the inner loops belong to the scheme.
-// Framework of Wang & Hu, CAGD 27 (2010), section 2.
+// The interface of an embedding scheme. A scheme is bound to a surface and then called for whole
+// batches of units: virtual calls cost nothing then, and the inner loops belong to the scheme.
+//
+// This work is based on:
+// Wang, Hu. Optimization approach for 3D model watermarking by linear binary programming. CAGD 27
+// (2010), section 2.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -15,10 +19,10 @@
 
 namespace triglyph {
 
-// Candidates for invariant units. Anchors ascend and none comes twice: where a place offers several
-// units, the anchor says which. What a unit reads contains what it moves.
+// The candidates for invariant units. Anchors ascend strictly: where a place offers several units,
+// the anchor tells them apart. The points that a unit reads include those that it moves.
 struct UnitSet {
-  std::vector<std::uint32_t> anchors;  // scheme's own: triangle (TSQ), edge (AIE), point (IIE)
+  std::vector<std::uint32_t> anchors;  // triangle (TSQ), edge and grouping (AIE), point (IIE)
   PointLists moved;                    // points whose position the unit may change
   PointLists read;                     // points its invariants depend on; empty: the same as moved
 
@@ -39,42 +43,49 @@ struct Embedding {
   std::vector<std::uint32_t> failed;  // indices of the placements that could not be made, ascending
 };
 
-// A scheme on one surface. It works out once what it needs of the surface, some of it when it is
-// first asked for, and all calls share it; every call may be repeated, from several threads, and
-// answers the same. The surface and the scheme must outlive it.
+// A scheme bound to one surface. What it computes of the surface alone it computes once, at the
+// latest when a call first needs it. Every call may be repeated, from several threads at a time,
+// and returns the same. The mesh, the halfedges and the scheme must outlive it.
 class BoundScheme {
  public:
   virtual ~BoundScheme() = default;
 
-  // All candidates the marker can be embedded in.
+  // Returns all candidates in which the marker can be embedded.
   [[nodiscard]] virtual UnitSet find_units() const = 0;
 
-  // Cost of every chosen unit (row) carrying every word (column); infinity where it cannot. The
-  // units are those of find_units, or of a scheme bound to the same surface that differs in nothing
-  // but the word code.
+  // Returns what each chosen unit (row) costs under each word (column), model units; kInfeasible
+  // where the unit cannot carry the word. `chosen` are indices into `units`, which are those of
+  // find_units, or of a scheme bound to the same surface that differs in the word code alone.
   [[nodiscard]] virtual CostMatrix costs(const UnitSet& units,
                                          std::span<const std::uint32_t> chosen,
                                          std::span<const Word> words) const = 0;
 
-  // New positions with every placement made. Precondition: the units do not interfere.
+  // Returns the positions of all points with every placement made that can be made. Precondition:
+  // the units do not interfere.
   [[nodiscard]] virtual Embedding embed(const UnitSet& units, std::span<const Placement> placements,
                                         std::span<const Word> words) const = 0;
 
-  // Everything in the mesh that shows the marker, by strictly ascending anchor, the anchors being
-  // those of find_units. Blind: knows nothing of the original.
+  // Returns the readings of all units that show the marker, by strictly ascending anchor; anchors
+  // number the same places as in find_units. Reading is blind: it knows nothing of the original.
   [[nodiscard]] virtual std::vector<Reading> read() const = 0;
 
-  // Where a unit lies: the points it depends on, as the surface now is, ascending. Of an anchor
-  // that the surface does not have, or that no unit can stand at any more, what is left, or
-  // nothing.
+  // Returns those of the readings of read() whose anchors are among `anchors`, which ascend
+  // strictly. An anchor that the surface does not have is never read. TSQ and AIE take
+  // O(anchors); IIE takes as long as read(), since its readings depend on each other.
+  [[nodiscard]] virtual std::vector<Reading> read_at(
+      std::span<const std::uint32_t> anchors) const = 0;
+
+  // Returns for each anchor the points on which its unit depends, ascending. Where the surface has
+  // no such unit any more the list holds what is left of it, or nothing.
   [[nodiscard]] virtual PointLists points_of(std::span<const std::uint32_t> anchors) const = 0;
 
-  // The same scheme on the same triangles and halfedges with other positions: answers as a fresh
-  // bind to `moved` would, without working out again what depends on connectivity alone. Does not
-  // need this bound scheme any more once it is made.
+  // Binds the scheme to the same triangles and halfedges with other positions. The result equals
+  // that of Scheme::bind(moved), but what depends on connectivity alone is not computed again. It
+  // does not refer to this bound scheme.
   [[nodiscard]] virtual std::unique_ptr<BoundScheme> moved_to(const Surface& moved) const = 0;
 
-  // Width of a quantiser cell on this surface, model units: the step times the mean edge length.
+  // Returns the width of a quantiser cell on this surface, model units: the step times the mean
+  // edge length.
   [[nodiscard]] virtual double cell_size() const = 0;
 };
 
@@ -82,7 +93,7 @@ class Scheme {
  public:
   virtual ~Scheme() = default;
 
-  // The surface and this scheme must outlive what is returned.
+  // Binds the scheme to a surface. Its mesh and halfedges and this scheme must outlive the result.
   [[nodiscard]] virtual std::unique_ptr<BoundScheme> bind(const Surface& surface) const = 0;
 };
 

@@ -1,4 +1,4 @@
-// What all schemes can be told. Each scheme adds options of its own in its folder.
+// The options of all schemes. Each scheme adds options of its own in its folder.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace triglyph {
 
-// Which local change of the shape the assignment minimises, in model units. See local_cost.h.
+// The local change of the shape that assignment minimises, in model units. See local_cost.h.
 enum class CostFunction {
   Displacement,  // the farthest move of a unit's points
   Rms,           // root mean square of the moves of a unit's points
@@ -17,7 +17,7 @@ enum class CostFunction {
   Normal,     // change of a face's normal times the root of its area: what shading shows
 };
 
-// Names by CostFunction: "displacement", "rms", "hausdorff", "normal".
+// Returns the names by CostFunction: "displacement", "rms", "hausdorff", "normal".
 [[nodiscard]] std::span<const std::string_view> cost_names();
 [[nodiscard]] std::string_view name_of(CostFunction cost);
 
@@ -26,7 +26,7 @@ struct SchemeOptions {
   CostFunction cost = CostFunction::Displacement;
 };
 
-// Declares the width of a scheme's cells, above 0 and up to `widest`.
+// Declares the option for the width of a scheme's cells, above 0 and up to `widest`.
 template <typename Options>
 [[nodiscard]] Option<Options> step_option(double widest) {
   return number_option<Options>("step", &Options::step, {0, widest, true}, "", "the scheme's",

@@ -1,5 +1,6 @@
 #include "engine/marking/mark.h"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -255,6 +256,32 @@ TEST(Mark, DoesNotDependOnThreads) {
     const Marking marking = mark_ball();
     return std::make_tuple(marking.positions, marking.carriers, marking.cost_sum);
   });
+}
+
+// Numbers so coarse that they spoil some units: these are taken back, and all that are left read
+// their word. Sizes are fixed, since a unit that is taken back changes the mean edge length.
+TEST_P(EverySchemesMark, EveryCarrierReadsItsWordWithMargin) {
+  const test::Solid& ball = ball_for(options_);
+  options_.scheme_options = fixed_for(ball.mesh, options_.scheme_options);
+  Marking marking;
+  for (double step = 2e-5; marking.units_dropped == 0; step *= 2) {
+    ASSERT_LT(step, 0.01);
+    const auto coarse = [&](const Vec3& p) {
+      return Vec3(std::round(p[0] / step), std::round(p[1] / step), std::round(p[2] / step)) * step;
+    };
+    marking = mark(ball.surface(), kMessage, Key::trial(), options_, coarse, step);
+  }
+  ASSERT_GT(marking.carriers.size(), 20U);
+  const Mesh marked{marking.positions, ball.mesh.triangles};
+  const auto readings = read(marked, Key::trial(), options_).readings;
+  for (const Carrier& carrier : marking.carriers) {
+    const auto at = std::lower_bound(
+        readings.begin(), readings.end(), carrier.anchor,
+        [](const Reading& reading, std::uint32_t a) { return reading.anchor < a; });
+    ASSERT_TRUE(at != readings.end() && at->anchor == carrier.anchor);
+    EXPECT_EQ(at->word, marking.words[carrier.word]);
+    EXPECT_LE(at->worst_offset, 0.5);
+  }
 }
 
 TEST(Settle, TakesBackWhatFlipsAFace) {

@@ -110,6 +110,26 @@ TEST(AffineNorm, NearestPointHasTheNormAndNoOtherIsNearer) {
   }
 }
 
+// The bound holds in space and in a plane, and along the axis of least deviation it is the
+// distance.
+TEST(AffineNorm, LeastDistanceIsABoundAndIsReached) {
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    const bool is_plane = seed % 4 == 0;
+    const AffineNorm norm(random_basis(seed, is_plane ? 0 : 0.3), kPlaneBelow);
+    ASSERT_EQ(norm.is_plane(), is_plane);
+    Vec3 point = random_point(seed, 9) * 2;
+    if (is_plane) point[2] = 0;
+    const double wanted = norm(point) * (0.2 + 2 * random_unit(seed, 9, 9));
+    const double bound = norm.least_distance(norm(point), wanted);
+    EXPECT_LE(bound, (norm.nearest_with_norm(point, wanted) - point).norm() * (1 + 1e-9));
+    EXPECT_EQ(bound, norm.least_distance(wanted, norm(point)));
+  }
+  const AffineNorm norm({Vec3(1, 0, 0.1), Vec3(-1, 0, 0.1), Vec3(0, 1, -0.1), Vec3(0, -1, -0.1)},
+                        kPlaneBelow);
+  const Vec3 low(0, 0, 0.2), high(0, 0, 0.5);
+  EXPECT_NEAR(norm.least_distance(norm(low), norm(high)), 0.3, 1e-12);
+}
+
 TEST(AffineNorm, PointsInThePlaneOfSymmetryLeaveIt) {
   // y on the plane of the two greater axes, wanted norm out of its reach there
   const std::array<Vec3, 4> basis{Vec3(1, 0, 0.01), Vec3(-1, 0, 0.01), Vec3(0, 1, -0.01),

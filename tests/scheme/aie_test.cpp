@@ -1,5 +1,6 @@
 #include "engine/scheme/aie/aie.h"
 
+#include <algorithm>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -87,6 +88,63 @@ TEST(EdgeNeighbourhood, GroupsNeighboursOfARegularEdge) {
   EXPECT_EQ(group(*both, 2), (std::set<std::uint32_t>{22, 27, 28}));
 }
 
+std::set<std::uint32_t> neighbours_of(const Mesh& mesh, std::uint32_t point) {
+  std::set<std::uint32_t> neighbours;
+  for (const Triangle& triangle : mesh.triangles) {
+    if (std::find(triangle.begin(), triangle.end(), point) == triangle.end()) continue;
+    neighbours.insert(triangle.begin(), triangle.end());
+  }
+  neighbours.erase(point);
+  return neighbours;
+}
+
+// By sets, on a surface of all valences from three on.
+TEST(EdgeNeighbourhood, ExclusiveNeighboursAreThoseOfOneBasisPointAlone) {
+  Mesh mesh = make_sample_shape(SampleShape::HighGenus, 1000, 5);
+  for (std::size_t t = 0; t < 40; ++t) {  // a point amid each of some faces
+    const Triangle cut = mesh.triangles[7 * t];
+    const auto middle = static_cast<std::uint32_t>(mesh.positions.size());
+    mesh.positions.push_back(
+        (mesh.positions[cut[0]] + mesh.positions[cut[1]] + mesh.positions[cut[2]]) / 3.0);
+    mesh.triangles[7 * t] = {cut[0], cut[1], middle};
+    mesh.triangles.push_back({cut[1], cut[2], middle});
+    mesh.triangles.push_back({cut[2], cut[0], middle});
+  }
+  const test::Solid solid(mesh);
+  std::vector<std::set<std::uint32_t>> next_to;
+  for (std::uint32_t i = 0; i < mesh.positions.size(); ++i) {
+    next_to.push_back(neighbours_of(mesh, i));
+  }
+  std::size_t found = 0;
+  for (std::uint32_t edge = 0; edge < solid.halfedges.edge_count(); ++edge) {
+    const auto basis = basis_of(solid.surface(), edge, false);
+    ASSERT_TRUE(basis);
+    std::array<std::set<std::uint32_t>, 4> alone;
+    for (std::size_t k = 0; k < 4; ++k) {
+      for (const std::uint32_t point : next_to[(*basis)[k]]) {
+        const auto is_next = [&](std::uint32_t b) { return next_to[b].contains(point); };
+        const bool in_basis = std::find(basis->begin(), basis->end(), point) != basis->end();
+        if (!in_basis && std::count_if(basis->begin(), basis->end(), is_next) == 1) {
+          alone[k].insert(point);
+        }
+      }
+    }
+    const auto around =
+        neighbourhood_of(solid.surface(), edge, false, GroupRule::ExclusiveNeighbours);
+    const bool none_empty =
+        std::none_of(alone.begin(), alone.end(), [](const auto& group) { return group.empty(); });
+    ASSERT_EQ(around.has_value(), none_empty);
+    if (!around) continue;
+    ++found;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto group = around->group(k);
+      EXPECT_EQ(std::set<std::uint32_t>(group.begin(), group.end()), alone[k]);
+      EXPECT_EQ(group.size(), alone[k].size());
+    }
+  }
+  EXPECT_GT(found, 300U);
+}
+
 TEST(EdgeNeighbourhood, NeedsASurfaceAllAround) {
   const test::Solid grid(test::flat_grid(5, 5));
   for (const GroupRule rule : {GroupRule::OuterApexes, GroupRule::MiddleNeighbours}) {
@@ -149,6 +207,26 @@ TEST(Aie, NoUnitIsReadTwice) {
     EXPECT_GE(found.agreeing, marking.carriers.size());
     EXPECT_LE(found.agreeing, marking.carriers.size() * 21 / 20);  // some by chance
   }
+}
+
+// With nested groupings one reading of an edge may count in place of the other, which was not asked
+// for.
+TEST(Aie, ReadAtFindsOfNestedGroupingsTheOneThatReadFinds) {
+  const MarkOptions options = options_with(AieGroups::All);
+  const test::Solid marked(marked_ball(options));
+  const auto scheme =
+      make_scheme("aie", WordCode(Key::trial(), options.format), options.scheme_options);
+  const auto bound = scheme->bind(marked.surface());
+  const std::vector<Reading> all = bound->read();
+  std::vector<std::uint32_t> found, others;  // anchors
+  for (const Reading& reading : all) found.push_back(reading.anchor);
+  for (const std::uint32_t anchor : found) {
+    const std::uint32_t other = anchor ^ 1;
+    if (!std::binary_search(found.begin(), found.end(), other)) others.push_back(other);
+  }
+  ASSERT_GT(others.size(), 100U);
+  EXPECT_TRUE(bound->read_at(others).empty());
+  EXPECT_EQ(bound->read_at(found).size(), all.size());
 }
 
 // A group of several points outlives the loss of some of them: as large a share of the points that

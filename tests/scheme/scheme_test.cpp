@@ -281,6 +281,34 @@ TEST_P(EveryScheme, MovedToReadsLikeAFreshBind) {
   }
 }
 
+// Every third reading, each candidate that shows nothing, and anchors that the surface lacks.
+TEST_P(EveryScheme, ReadAtFindsWhatReadFindsThere) {
+  for (const SampleShape shape : {SampleShape::Closed, SampleShape::Open, SampleShape::HighGenus}) {
+    const test::Solid solid(make_sample_shape(shape, 5000, 3));
+    const auto scheme = relative_scheme();
+    const auto bound = scheme->bind(solid.surface());
+    const Chosen chosen = choose(*bound, solid.surface());
+    const auto words = code_.fill_words(std::min(code_.capacity(), 100U));
+    const auto placements = random_placements(*bound, chosen, words);
+    const Mesh marked{bound->embed(chosen.units, placements, words).positions,
+                      solid.mesh.triangles};
+    const auto moved = bound->moved_to({marked, solid.halfedges});
+    const std::vector<Reading> all = moved->read();
+    ASSERT_GT(all.size(), 30U);
+    std::set<std::uint32_t> silent(chosen.units.anchors.begin(), chosen.units.anchors.end());
+    for (const Reading& reading : all) silent.erase(reading.anchor);
+    std::set<std::uint32_t> anchors = silent;
+    std::vector<Reading> expected;
+    for (std::size_t i = 0; i < all.size(); i += 3) {
+      anchors.insert(all[i].anchor);
+      expected.push_back(all[i]);
+    }
+    anchors.insert({0xfffffff0, 0xffffffff});
+    EXPECT_TRUE(same(moved->read_at(std::vector(anchors.begin(), anchors.end())), expected));
+    EXPECT_TRUE(moved->read_at({}).empty());
+  }
+}
+
 TEST_P(EveryScheme, CallsCanBeRepeated) {
   const auto& ball = test::bumpy_ball();
   const auto scheme = relative_scheme();

@@ -6,22 +6,34 @@
 #include <optional>
 
 #include "engine/base/error.h"
-#include "engine/base/once.h"
 #include "engine/base/parallel.h"
-#include "engine/mesh/edge_length.h"
 #include "engine/scheme/cost_rows.h"
-#include "engine/scheme/local_cost.h"
+#include "engine/scheme/surface_binding.h"
 
 namespace triglyph {
 namespace {
 
-constexpr double kPlaneBelow = 2e-4;   // flatness below which a basis is read as plane
-constexpr double kExactPlane = 1e-5;   // ... and below which it may be marked as such
-constexpr double kMinFlatness = 4e-3;  // thinner solid bases do not survive rounding
+// Flatness below which a basis is read as plane. Both limits of marking are twenty times away, so
+// that neither rounding nor affine maps take a marked unit across.
+constexpr double kPlaneBelow = 2e-4;
+// Flatness up to which a basis is marked as plane, and height in greatest deviations up to which
+// its neighbours count as lying in that plane: flat but for rounding.
+constexpr double kExactPlane = 1e-5;
+// Flatness from which on a basis is marked as solid: the norm amplifies rounding by 1 / flatness,
+// and marks on thinner bases do not survive it.
+constexpr double kMinFlatness = 4e-3;
+// Straightness from which on a basis is marked: along a needle the norm amplifies rounding within
+// the plane, too.
 constexpr double kMinStraightness = 0.02;
-constexpr double kMaxHeight = 1e-3;  // of a point over a plane basis, in its greatest deviations
-constexpr double kMaxMove = 1;       // in greatest deviations: farther is not worth a unit
-constexpr std::size_t kUnitsPerBlock = 16;
+// Height in greatest deviations up to which a point is read over a plane basis: a hundred times
+// kExactPlane, for what rounding and affine maps add.
+constexpr double kMaxHeight = 1e-3;
+// Greatest move in greatest deviations of the basis: one as far as the basis is wide would be seen,
+// and would flip a face as a rule.
+constexpr double kMaxMove = 1;
+// Factor of a lower bound on a distance: rounding takes far less from the distance.
+constexpr double kSurely = 1 - 1e-6;
+// A group holds a quarter of the word and has a table of costs for all its values: 2^8 at most.
 constexpr int kMaxWordBits = 32;
 
 std::array<Vec3, 4> corners_of(const Mesh& mesh, const std::array<std::uint32_t, 4>& basis) {
@@ -52,9 +64,10 @@ struct AieScheme::Way {
 };
 
 // The scheme on one surface.
-class AieScheme::Bound final : public BoundScheme {
+class AieScheme::Bound final : public SurfaceBinding {
  public:
-  Bound(const AieScheme& scheme, const Surface& surface) : scheme_(scheme), surface_(surface) {}
+  Bound(const AieScheme& scheme, const Surface& surface)
+      : SurfaceBinding(surface, scheme.options_), scheme_(scheme) {}
 
   [[nodiscard]] UnitSet find_units() const override;
   [[nodiscard]] CostMatrix costs(const UnitSet& units, std::span<const std::uint32_t> chosen,
@@ -62,22 +75,17 @@ class AieScheme::Bound final : public BoundScheme {
   [[nodiscard]] Embedding embed(const UnitSet& units, std::span<const Placement> placements,
                                 std::span<const Word> words) const override;
   [[nodiscard]] std::vector<Reading> read() const override;
+  [[nodiscard]] std::vector<Reading> read_at(std::span<const std::uint32_t> anchors) const override;
   [[nodiscard]] PointLists points_of(std::span<const std::uint32_t> anchors) const override;
   [[nodiscard]] std::unique_ptr<BoundScheme> moved_to(const Surface& moved) const override {
     return std::make_unique<Bound>(scheme_, moved);
   }
-  [[nodiscard]] double cell_size() const override {
-    return scheme_.options_.step * mean_edge_length(surface_.mesh);
-  }
 
  private:
-  [[nodiscard]] const LocalCost& local_cost() const {
-    return local_cost_.get([&] { return LocalCost(surface_, scheme_.options_.cost); });
-  }
+  // Appends what an edge shows with each grouping, if it shows the marker.
+  void read_edge(std::uint32_t edge, std::vector<Reading>& out) const;
 
   const AieScheme& scheme_;
-  const Surface surface_;
-  Once<LocalCost> local_cost_;
 };
 
 AieScheme::Channel AieScheme::make_channel(const WordCode& code, double step, std::size_t group) {
@@ -127,13 +135,17 @@ AieScheme::GroupBits AieScheme::deal_out(const Word& word) const {
 std::optional<Vec3> AieScheme::place(const Site& site, std::size_t group, const Vec3& point,
                                      std::uint32_t bits) const {
   const Quantiser& quantiser = channels_[group].quantiser(site.norm);
-  const double value = std::log(site.norm(point));
+  const double norm = site.norm(point);
+  const double value = std::log(norm);
   if (!std::isfinite(value)) return std::nullopt;
   const double near = quantiser.nearest_centre(value, bits);
   std::optional<Vec3> best;
   double best_move = site.reach;
   for (const double centre : {near, quantiser.second_centre(value, near)}) {
-    const Vec3 target = site.norm.nearest_with_norm(point, std::exp(centre));
+    const double wanted = std::exp(centre);
+    // most second cells end here, before their dear nearest point
+    if (!(kSurely * site.norm.least_distance(norm, wanted) < best_move)) continue;
+    const Vec3 target = site.norm.nearest_with_norm(point, wanted);
     const double move = (target - point).norm();
     if (!(move < best_move)) continue;
     best_move = move;
@@ -186,14 +198,14 @@ float AieScheme::group_cost(const Mesh& mesh, const LocalCost& local, const Site
 }
 
 UnitSet AieScheme::Bound::find_units() const {
-  const std::size_t edges = surface_.halfedges.edge_count();
+  const std::size_t edges = surface().halfedges.edge_count();
   std::vector<UnitSet> parts((edges + kBlock - 1) / kBlock);
   const auto find_at = [&](std::uint32_t edge, UnitSet& found) {
-    const std::optional<Basis> basis = basis_at(surface_, edge);
+    const std::optional<Basis> basis = basis_at(surface(), edge);
     if (!basis) return;
     for (std::uint32_t i = 0; i < kAlternatives; ++i) {
       const std::uint32_t anchor = kAlternatives * edge + i;
-      const auto around = scheme_.neighbours_of(surface_, *basis, anchor);
+      const auto around = scheme_.neighbours_of(surface(), *basis, anchor);
       if (!around) continue;
       const auto moved = around->all_groups();
       found.anchors.push_back(anchor);
@@ -232,7 +244,7 @@ CostMatrix AieScheme::Bound::costs(const UnitSet& units, std::span<const std::ui
   for (const Word& word : words) bits_of.push_back(scheme_.deal_out(word));
   const LocalCost& local = local_cost();
   return fill_cost_rows(chosen.size(), words.size(), [&](std::size_t row, std::span<float> costs) {
-    const std::optional<Site> site = scheme_.site_at(surface_, units.anchors[chosen[row]]);
+    const std::optional<Site> site = scheme_.site_at(surface(), units.anchors[chosen[row]]);
     if (!site) return;
     // a group has few values and many words share them
     std::array<std::vector<float>, 4> known;
@@ -243,7 +255,7 @@ CostMatrix AieScheme::Bound::costs(const UnitSet& units, std::span<const std::ui
       std::array<float, 4> group_costs{};
       for (std::size_t k = 0; k < 4; ++k) {
         float& cost = known[k][bits_of[word][k]];
-        if (cost < 0) cost = scheme_.group_cost(surface_.mesh, local, *site, k, bits_of[word][k]);
+        if (cost < 0) cost = scheme_.group_cost(mesh(), local, *site, k, bits_of[word][k]);
         group_costs[k] = cost;
       }
       costs[word] = local.combine(group_costs, site->around.all_groups().size());
@@ -253,32 +265,24 @@ CostMatrix AieScheme::Bound::costs(const UnitSet& units, std::span<const std::ui
 
 Embedding AieScheme::Bound::embed(const UnitSet& units, std::span<const Placement> placements,
                                   std::span<const Word> words) const {
-  Embedding embedding{surface_.mesh.positions, {}};
-  const auto embed_unit = [&](const Placement& placement) {
-    const std::optional<Site> site = scheme_.site_at(surface_, units.anchors[placement.unit]);
+  return embed_each(placements.size(), [&](std::size_t index, std::vector<Vec3>& positions) {
+    const Placement& placement = placements[index];
+    const std::optional<Site> site = scheme_.site_at(surface(), units.anchors[placement.unit]);
     if (!site) return false;
     const GroupBits bits = scheme_.deal_out(words[placement.word]);
     std::array<Vec3, EdgeNeighbourhood::kMaxPoints> targets;
     std::size_t next = 0;
     for (std::size_t k = 0; k < 4; ++k) {
       for (const std::uint32_t point : site->around.group(k)) {
-        const auto to = scheme_.place(*site, k, surface_.mesh.positions[point], bits[k]);
+        const auto to = scheme_.place(*site, k, mesh().positions[point], bits[k]);
         if (!to) return false;
         targets[next++] = *to;
       }
     }
     const auto points = site->around.all_groups();
-    for (std::size_t i = 0; i < points.size(); ++i) embedding.positions[points[i]] = targets[i];
+    for (std::size_t i = 0; i < points.size(); ++i) positions[points[i]] = targets[i];
     return true;
-  };
-  std::vector<char> placed(placements.size());
-  parallel_for(
-      placements.size(), [&](std::size_t i) { placed[i] = embed_unit(placements[i]) ? 1 : 0; },
-      kUnitsPerBlock);
-  for (std::uint32_t i = 0; i < placements.size(); ++i) {
-    if (placed[i] == 0) embedding.failed.push_back(i);
-  }
-  return embedding;
+  });
 }
 
 // A group's points carry the same bits; where they disagree, those nearest to their cells' centres
@@ -373,35 +377,51 @@ std::optional<AieScheme::UnitReading> AieScheme::read_unit(const Surface& surfac
   return turned ? backward : forward;
 }
 
+void AieScheme::Bound::read_edge(std::uint32_t edge, std::vector<Reading>& out) const {
+  const auto basis = basis_of(surface(), edge, false);
+  if (!basis) return;
+  const AffineNorm norm(corners_of(mesh(), *basis), kPlaneBelow);
+  if (!(norm.straightness() > 0)) return;
+  auto first = scheme_.read_unit(surface(), norm, kAlternatives * edge);
+  auto second = scheme_.read_unit(surface(), norm, kAlternatives * edge + 1);
+  const bool nested = scheme_.options_.groups == AieGroups::All;
+  if (nested && first && second && first->reading.word == second->reading.word) {
+    // one unit. Its points are those of the larger grouping if all of these agree: in a unit of
+    // the smaller one the others are strangers, and agree with chance 2^-(bits of the word).
+    const bool larger = second->unanimous || second->reading.weight > first->reading.weight;
+    (larger ? first : second).reset();
+  }
+  if (first) out.push_back(first->reading);
+  if (second) out.push_back(second->reading);
+}
+
 std::vector<Reading> AieScheme::Bound::read() const {
-  const auto read_edge = [&](std::size_t i, std::vector<Reading>& out) {
-    const auto edge = static_cast<std::uint32_t>(i);
-    const auto basis = basis_of(surface_, edge, false);
-    if (!basis) return;
-    const AffineNorm norm(corners_of(surface_.mesh, *basis), kPlaneBelow);
-    if (!(norm.straightness() > 0)) return;
-    auto first = scheme_.read_unit(surface_, norm, kAlternatives * edge);
-    auto second = scheme_.read_unit(surface_, norm, kAlternatives * edge + 1);
-    const bool nested = scheme_.options_.groups == AieGroups::All;
-    if (nested && first && second && first->reading.word == second->reading.word) {
-      // one unit. Its points are those of the larger grouping if all of these agree: in a unit of
-      // the smaller one the others are strangers, and agree with chance 2^-(bits of the word).
-      const bool larger = second->unanimous || second->reading.weight > first->reading.weight;
-      (larger ? first : second).reset();
+  return parallel_collect<Reading>(surface().halfedges.edge_count(),
+                                   [&](std::size_t edge, std::vector<Reading>& out) {
+                                     read_edge(static_cast<std::uint32_t>(edge), out);
+                                   });
+}
+
+// Whole edges are read: where groupings are nested, one may count in place of the other.
+std::vector<Reading> AieScheme::Bound::read_at(std::span<const std::uint32_t> anchors) const {
+  return parallel_collect<Reading>(anchors.size(), [&](std::size_t i, std::vector<Reading>& out) {
+    const std::uint32_t edge = anchors[i] / kAlternatives;
+    if (edge >= surface().halfedges.edge_count()) return;
+    std::vector<Reading> shown;
+    read_edge(edge, shown);
+    for (const Reading& reading : shown) {
+      if (reading.anchor == anchors[i]) out.push_back(reading);
     }
-    if (first) out.push_back(first->reading);
-    if (second) out.push_back(second->reading);
-  };
-  return parallel_collect<Reading>(surface_.halfedges.edge_count(), read_edge);
+  });
 }
 
 PointLists AieScheme::Bound::points_of(std::span<const std::uint32_t> anchors) const {
   PointLists lists;
   for (const std::uint32_t anchor : anchors) {
     std::vector<std::uint32_t> points;
-    if (anchor / kAlternatives < surface_.halfedges.edge_count()) {
+    if (anchor / kAlternatives < surface().halfedges.edge_count()) {
       const auto around =
-          neighbourhood_of(surface_, anchor / kAlternatives, false, scheme_.rule_of(anchor));
+          neighbourhood_of(surface(), anchor / kAlternatives, false, scheme_.rule_of(anchor));
       if (around) {
         points.assign(around->basis.begin(), around->basis.end());
         points.insert(points.end(), around->all_groups().begin(), around->all_groups().end());

@@ -39,18 +39,20 @@ class AieScheme final : public Scheme {
   // Throws Error Usage if m + s + w > 32 or the step is out of range.
   AieScheme(const WordCode& code, const AieOptions& options);
 
-  // An anchor is kAlternatives * edge + alternative: one way of grouping. All calls are parallel:
-  // find_units and read take O(edges), costs O(chosen * (2^(bits of a group) + words)). read tries
-  // every edge both ways and with all groupings; a unit whose points are among those of another
-  // grouping of its edge is read once, not twice.
+  // Binds the scheme; O(1). An anchor is kAlternatives * edge + grouping. All calls are parallel:
+  // find_units and read take O(edges), read_at O(anchors), costs O(chosen * (2^(bits of a group) +
+  // words)), embed O(placements). Every edge is read in both directions and with every grouping; of
+  // nested groupings that read the same word one counts.
   [[nodiscard]] std::unique_ptr<BoundScheme> bind(const Surface& surface) const override;
 
   static constexpr std::uint32_t kAlternatives = 2;
 
  private:
+  // Within a plane the norm does not amplify rounding, so that cells may be narrower; the period of
+  // 64 cells, which bounds the moves, shrinks with them.
   static constexpr double kPlaneSteps = 16;
 
-  // How one group's points are read and where they go.
+  // The quantisers of one group.
   struct Channel {
     Quantiser solid;
     Quantiser plane;
@@ -60,13 +62,13 @@ class AieScheme final : public Scheme {
     }
     [[nodiscard]] int bits() const { return solid.bits(); }
   };
-  using GroupBits = std::array<std::uint32_t, 4>;  // what each group carries of a word
+  using GroupBits = std::array<std::uint32_t, 4>;  // the bits of a word that each group carries
   class Bound;
-  struct Basis;  // of an edge that may be marked
-  struct Site;   // a unit's basis and groups, ready to be moved
-  struct Way;    // what an edge reads in one direction
+  struct Basis;  // the norm of an edge that may be marked
+  struct Site;   // a unit's norm and groups
+  struct Way;    // the readings of the groups in one direction of the edge
 
-  // What a group's points say together.
+  // The reading that a group's points vote for.
   struct GroupReading {
     std::uint32_t bits = 0;
     float distance = 1;  // from the cells' centres, in half cells

@@ -9,19 +9,19 @@
 
 namespace triglyph {
 
-// Which neighbours of a basis carry a group's bits.
+// The neighbours of a basis that carry a group's bits.
 enum class AieGroups {
   One,  // one a group: more units
   All,  // all that can be told apart: a group survives damage to some of its points
 };
 
-// Names by AieGroups.
+// The names by AieGroups.
 inline constexpr std::array<std::string_view, 2> kAieGroupNames = {"one", "all"};
 
 struct AieOptions : SchemeOptions {
   AieGroups groups = AieGroups::One;
 
-  // Cells as those of TSQ.
+  // The cells are as wide as those of TSQ.
   [[nodiscard]] static AieOptions defaults(bool fill) { return {{.step = fill ? 0.004 : 0.02}}; }
   [[nodiscard]] static WordFormat format(bool fill) {
     return fill ? WordFormat{6, 13, 5} : WordFormat{6, 8, 10};

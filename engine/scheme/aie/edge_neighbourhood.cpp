@@ -7,14 +7,12 @@ namespace {
 
 // The points around one basis point, counter-clockwise.
 struct Ring {
-  std::array<std::uint32_t, EdgeNeighbourhood::kMaxPoints> points{};
+  std::array<std::uint32_t, EdgeNeighbourhood::kMaxPoints> points;  // the first `size` count
   std::size_t size = 0;
 
   [[nodiscard]] bool contains(std::uint32_t point) const {
-    for (std::size_t i = 0; i < size; ++i) {
-      if (points[i] == point) return true;
-    }
-    return false;
+    const auto end = points.begin() + static_cast<std::ptrdiff_t>(size);
+    return std::find(points.begin(), end, point) != end;
   }
 };
 
@@ -29,10 +27,11 @@ bool walk_ring(const Halfedges& halfedges, Halfedge first, Ring& ring) {
   return true;
 }
 
-// The halfedge a -> b and the spokes from which the rings of a, b, c, d are walked.
+// Of the halfedge a -> b: the spokes from which the rings of a, b, c, d are walked.
 struct Frame {
-  Halfedge along;
-  std::array<Halfedge, 4> spokes;  // a -> b, b -> a, c -> a, d -> b
+  std::array<Halfedge, 4> spokes;  // a -> b, b -> a, c -> a, d -> b: every ring begins with two
+                                   // basis points and an outer apex; those of a and b end with an
+                                   // outer apex and a basis point, those of c and d with an apex
   std::array<Halfedge, 4> outer;   // c -> a, d -> b, b -> c, a -> d: behind each lies a's, b's,
                                    // c's, d's outer apex
 };
@@ -42,8 +41,7 @@ Frame frame_of(const Halfedges& halfedges, std::uint32_t edge, bool reversed) {
   const Halfedge back = halfedges.opposite(along);
   const Halfedge from_c = halfedges.previous(along);
   const Halfedge from_d = halfedges.previous(back);
-  return {along,
-          {along, back, from_c, from_d},
+  return {{along, back, from_c, from_d},
           {from_c, from_d, halfedges.next(along), halfedges.next(back)}};
 }
 
@@ -113,14 +111,12 @@ class Grouping {
   }
 
   bool collect_exclusive(GroupRule rule, std::size_t k) {
+    const Ring& ring = rings_[k];
     Ring exclusive;
-    for (std::size_t i = 0; i < rings_[k].size; ++i) {
-      const std::uint32_t point = rings_[k].points[i];
-      bool shared = std::count(result_.basis.begin(), result_.basis.end(), point) != 0;
-      for (std::size_t other = 0; other < 4; ++other) {
-        shared = shared || (other != k && rings_[other].contains(point));
-      }
-      if (!shared) exclusive.points[exclusive.size++] = point;
+    // between the basis points and apexes, which other rings have too
+    const std::size_t end = ring.size - (k < 2 ? 2 : 1);
+    for (std::size_t i = 3; i < end; ++i) {
+      if (!is_shared(ring.points[i], k)) exclusive.points[exclusive.size++] = ring.points[i];
     }
     if (exclusive.size == 0) return false;
     if (rule == GroupRule::MiddleNeighbours) return append(k, exclusive.points[exclusive.size / 2]);
@@ -128,6 +124,16 @@ class Grouping {
       if (!append(k, exclusive.points[i])) return false;
     }
     return true;
+  }
+
+  // Is a point of ring k in the basis or in another ring?
+  bool is_shared(std::uint32_t point, std::size_t k) const {
+    const auto& basis = result_.basis;
+    if (std::find(basis.begin(), basis.end(), point) != basis.end()) return true;
+    for (std::size_t other = 0; other < 4; ++other) {
+      if (other != k && rings_[other].contains(point)) return true;
+    }
+    return false;
   }
 
   bool append(std::size_t k, std::uint32_t point) {

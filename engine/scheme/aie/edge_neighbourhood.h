@@ -1,4 +1,4 @@
-// The surroundings of an edge as AIE reads them: four basis points and four groups of neighbours.
+// The neighbourhood of an edge as AIE reads it: four basis points and four groups of neighbours.
 //
 //            .------ c ------.          a -> b: the edge, in the direction it is read;
 //             \  A  / \  C  /           c: apex of the face to its left, d: to its right.
@@ -21,7 +21,7 @@
 
 namespace triglyph {
 
-// Which neighbours carry a group's bits.
+// The neighbours that carry a group's bits.
 enum class GroupRule {
   OuterApexes,          // one a group: the apexes behind the four outer edges
   MiddleNeighbours,     // one a group: of the neighbours of one basis point alone, the middle one
@@ -44,20 +44,22 @@ struct EdgeNeighbourhood {
   }
 };
 
-// Told of a group as soon as its points are known, groups ascending; false: the neighbourhood is
-// not wanted.
+// Is called for each group in turn as soon as its points are known. Returns false if the
+// neighbourhood is not wanted.
 using GroupVisit = std::function<bool(std::size_t group, std::span<const std::uint32_t> points)>;
 
-// The neighbourhood of an interior edge, read along its first halfedge or its second: the same
-// points either way, group k of the one being group k ^ 1 of the other. Nothing at a boundary,
-// where a group would be empty, where points coincide, with more than kMaxPoints, or if `visit`,
-// where given, does not want it.
+// Returns the neighbourhood of an interior edge, read along its first halfedge or its second. Both
+// have the same points: group k of the one is group k ^ 1 of the other. Returns nothing at a
+// boundary, where a group would be empty, where points coincide, where the groups have more than
+// kMaxPoints points, or as soon as `visit`, where given, returns false. O(1): a ring that is walked
+// has at most kMaxPoints points.
 [[nodiscard]] std::optional<EdgeNeighbourhood> neighbourhood_of(const Surface& surface,
                                                                 std::uint32_t edge, bool reversed,
                                                                 GroupRule rule,
                                                                 const GroupVisit& visit = {});
 
-// a, b, c, d alone; nothing at a boundary or where two faces share all their points.
+// Returns the points a, b, c, d of an edge; nothing at a boundary or where the edge's two faces
+// share all their points. O(1).
 [[nodiscard]] std::optional<std::array<std::uint32_t, 4>> basis_of(const Surface& surface,
                                                                    std::uint32_t edge,
                                                                    bool reversed);

@@ -1,5 +1,7 @@
-// One unit of IIE: the ball about a site, the cap of points that moves in it, and what its
-// invariants become as the cap moves.
+// One unit of IIE: the ball about a site, the cap of points that moves in it, and its invariants as
+// the cap moves.
+// Wang, Hu. A new watermarking method for 3D models based on integral invariants. IEEE Transactions
+// on Visualization and Computer Graphics 15 (2009).
 #pragma once
 
 #include <array>
@@ -14,7 +16,7 @@
 
 namespace triglyph {
 
-// Where balls lie: a surface and what has been worked out for it.
+// The surface in which balls lie, and what has been computed of it.
 struct BallGround {
   const Surface& surface;
   const SpatialIndex& index;
@@ -23,14 +25,15 @@ struct BallGround {
   int centre_rings;                      // a centre is the mean of the points within so many rings
   std::size_t most_triangles;            // of a ball
 
-  // Of a centre: the mean of these points.
+  // Returns the mean of these points: the centre of a ball.
   [[nodiscard]] Vec3 mean_of(std::span<const std::uint32_t> points) const;
 };
 
-// A bound on the triangles that the ball of a usable unit meets, for a mean edge length.
+// Returns a bound on the number of triangles that the ball of a usable unit meets. `radius` and
+// `edge`, the mean edge length, in model units.
 [[nodiscard]] std::size_t most_triangles_in(double radius, double edge);
 
-// How a cap moves along its ball's normal, model units.
+// The moves of a cap along the normal of its ball, model units.
 struct CapMoves {
   double all = 0;    // of the whole cap
   double outer = 0;  // of the cap without the centre's points, on top of it
@@ -54,45 +57,50 @@ struct Ball {
   [[nodiscard]] double move_of(std::size_t i, const CapMoves& moves) const {
     return profile[i] * (moves.all + (is_centres[i] != 0 ? 0 : moves.outer));
   }
-  // Of the moves of the cap's points, model units.
+  // Return the greatest and the root mean square of the moves of the cap's points, model units.
   [[nodiscard]] double farthest(const CapMoves& moves) const;
   [[nodiscard]] double rms(const CapMoves& moves) const;
 
-  // Works out the lifts for the radius with which the marked mesh will be read. False if the cap is
-  // too crumpled to change the volume.
+  // Computes the lifts for the radius with which the marked mesh will be read, model units. Returns
+  // false if the cap is too crumpled to change the volume.
   [[nodiscard]] bool set_lifts(double read_radius);
 };
 
-// The ball about a site with the lifts of the ground's own radius; nothing where the surface is no
-// place for one. O(triangles of the ball).
+// Returns the ball about a site with the lifts of the ground's own radius; nothing where the
+// surface offers no unit. O(triangles of the ball).
 [[nodiscard]] std::optional<Ball> ball_at(const BallGround& ground, std::uint32_t anchor);
 
-// A ball with its invariants along the way that its centre may take, the cap unmoved: a table whose
-// entries are worked out when they are first asked for. One thread at a time.
+// A ball with a table of its invariants along the way of its centre, the cap unmoved. An entry is
+// computed when it is first needed, so only one thread at a time may use a ball.
 class SampledBall {
  public:
-  // Of the ball at a site. Nothing where there is none or where too many triangles lie about it.
+  // Returns the sampled ball at a site; nothing where there is none or where more triangles than
+  // BallGround::most_triangles lie about it.
   [[nodiscard]] static std::optional<SampledBall> at(const BallGround& ground,
                                                      std::uint32_t anchor);
 
   [[nodiscard]] const Ball& ball() const { return ball_; }
 
-  // The same ball, to be read with another radius. False if the cap cannot change the volume then.
+  // Prepares the ball to be read with another radius, model units. Returns false if the cap cannot
+  // change the volume then.
   [[nodiscard]] bool set_read_radius(double radius);
 
-  // By interpolation in the table: `shift` of the centre along the normal, model units.
+  // Returns the invariants after a shift of the centre along the normal, model units, interpolated
+  // in the table.
   [[nodiscard]] BallInvariants interpolated(double shift);
-  // Where the centre must go for this area, as near as can be; by the table.
+  // Returns a small shift of the centre that brings the area to this share, by the table; nothing
+  // if none does.
   [[nodiscard]] std::optional<double> shift_for_area(double area);
 
-  // The moves that bring the volume to the share `wanted`, the centre being shifted so far and the
-  // volume with the cap unmoved being known.
+  // Returns the moves that bring the volume to the share `wanted` after a shift of the centre;
+  // `volume` is the share at that shift with the cap unmoved.
   [[nodiscard]] CapMoves moves_to(double shift, double volume, double wanted) const;
-  // From the table's answer to the exact one, for these shares.
+  // Returns the exact moves for these shares, the shift being known from the table; nothing if the
+  // area does not reach its share near that shift.
   [[nodiscard]] std::optional<CapMoves> refined(double shift, double area, double volume) const;
 
  private:
-  // Interpolation between so many is good to about a hundredth of a cell.
+  // Between so many samples interpolation is good to about a hundredth of a cell.
   static constexpr std::size_t kSamples = 17;
 
   SampledBall(const Surface& surface, Ball ball)

@@ -8,14 +8,13 @@
 #include <unordered_map>
 
 #include "engine/base/error.h"
-#include "engine/base/once.h"
 #include "engine/base/parallel.h"
 #include "engine/base/random.h"
 #include "engine/geometry/spatial_index.h"
 #include "engine/mesh/edge_length.h"
 #include "engine/scheme/cost_rows.h"
 #include "engine/scheme/iie/sites.h"
-#include "engine/scheme/local_cost.h"
+#include "engine/scheme/surface_binding.h"
 
 namespace triglyph {
 namespace {
@@ -80,18 +79,18 @@ std::vector<Reading> keep_best_apart(std::vector<Reading> readings, std::span<co
 }  // namespace
 
 // The scheme on one surface.
-class IieScheme::Bound final : public BoundScheme {
+class IieScheme::Bound final : public SurfaceBinding {
  public:
   // `sites` of the surface's connectivity.
   Bound(const IieScheme& scheme, const Surface& surface, std::shared_ptr<const IieSites> sites)
-      : scheme_(scheme),
-        surface_(surface),
+      : SurfaceBinding(surface, scheme.options_),
+        scheme_(scheme),
         sites_(std::move(sites)),
         edge_(mean_edge_length(surface.mesh)),
         radius_(scheme.options_.radius > 0 ? scheme.options_.radius
                                            : scheme.options_.radius_edges * edge_),
         index_(surface.mesh.positions, surface.mesh.triangles),
-        ground_{surface_,
+        ground_{this->surface(),
                 index_,
                 sites_->at_boundary,
                 radius_,
@@ -104,11 +103,11 @@ class IieScheme::Bound final : public BoundScheme {
   [[nodiscard]] Embedding embed(const UnitSet& units, std::span<const Placement> placements,
                                 std::span<const Word> words) const override;
   [[nodiscard]] std::vector<Reading> read() const override;
+  [[nodiscard]] std::vector<Reading> read_at(std::span<const std::uint32_t> anchors) const override;
   [[nodiscard]] PointLists points_of(std::span<const std::uint32_t> anchors) const override;
   [[nodiscard]] std::unique_ptr<BoundScheme> moved_to(const Surface& moved) const override {
     return std::make_unique<Bound>(scheme_, moved, sites_);
   }
-  [[nodiscard]] double cell_size() const override { return scheme_.options_.step * edge_; }
 
  private:
   using Balls = std::vector<std::optional<SampledBall>>;
@@ -124,18 +123,13 @@ class IieScheme::Bound final : public BoundScheme {
                                    std::span<const Placement> placements,
                                    std::span<const Word> words) const;
   [[nodiscard]] std::optional<CapMoves> exact_moves(SampledBall& sampled, const Word& word) const;
-  [[nodiscard]] const LocalCost& local_cost() const {
-    return local_cost_.get([&] { return LocalCost(surface_, scheme_.options_.cost); });
-  }
 
   const IieScheme& scheme_;
-  const Surface surface_;
   std::shared_ptr<const IieSites> sites_;
   double edge_;  // mean length
   double radius_;
   SpatialIndex index_;
   BallGround ground_;
-  Once<LocalCost> local_cost_;
   mutable std::mutex kept_mutex_;
   mutable std::shared_ptr<const KeptBalls> kept_ = std::make_shared<KeptBalls>();
 };
@@ -223,7 +217,7 @@ UnitSet IieScheme::Bound::find_units() const {
         if (!ball) return;
         std::vector<std::uint32_t> read = ball->cap;
         for (const std::uint32_t triangle : ball->near) {
-          const Triangle& corners = surface_.mesh.triangles[triangle];
+          const Triangle& corners = mesh().triangles[triangle];
           read.insert(read.end(), corners.begin(), corners.end());
         }
         std::sort(read.begin(), read.end());
@@ -253,7 +247,7 @@ CostMatrix IieScheme::Bound::costs(const UnitSet& units, std::span<const std::ui
         for (std::size_t word = 0; word < costs.size(); ++word) {
           const std::optional<Plan> planned = scheme_.plan(*sampled, words[word]);
           if (!planned) continue;
-          costs[word] = scheme_.cost_of(surface_.mesh, local, sampled->ball(), planned->moves);
+          costs[word] = scheme_.cost_of(mesh(), local, sampled->ball(), planned->moves);
         }
         if (keeps) balls[row] = std::move(sampled);
       });
@@ -299,8 +293,8 @@ Embedding IieScheme::Bound::embed(const UnitSet& units, std::span<const Placemen
   if (scheme_.options_.radius > 0) return embedding;
   // the mark changes the mean edge length a little, and with it the radius it will be read with
   for (int round = 0; round < kRadiusRounds; ++round) {
-    const double radius = scheme_.options_.radius_edges *
-                          mean_edge_length({embedding.positions, surface_.mesh.triangles});
+    const double radius =
+        scheme_.options_.radius_edges * mean_edge_length({embedding.positions, mesh().triangles});
     embedding = embed_in(balls, radius, placements, words);
   }
   return embedding;
@@ -316,26 +310,17 @@ std::optional<CapMoves> IieScheme::Bound::exact_moves(SampledBall& sampled,
 Embedding IieScheme::Bound::embed_in(Balls& balls, double read_radius,
                                      std::span<const Placement> placements,
                                      std::span<const Word> words) const {
-  Embedding embedding{surface_.mesh.positions, {}};
-  const auto embed_unit = [&](std::optional<SampledBall>& sampled, const Word& word) {
+  return embed_each(placements.size(), [&](std::size_t index, std::vector<Vec3>& positions) {
+    std::optional<SampledBall>& sampled = balls[index];
     if (!sampled || !sampled->set_read_radius(read_radius)) return false;
-    const std::optional<CapMoves> moves = exact_moves(*sampled, word);
+    const std::optional<CapMoves> moves = exact_moves(*sampled, words[placements[index].word]);
     if (!moves) return false;
     const Ball& ball = sampled->ball();
     for (std::size_t i = 0; i < ball.cap.size(); ++i) {
-      embedding.positions[ball.cap[i]] += ball.normal * ball.move_of(i, *moves);
+      positions[ball.cap[i]] += ball.normal * ball.move_of(i, *moves);
     }
     return true;
-  };
-  std::vector<char> placed(placements.size());
-  parallel_for(
-      placements.size(),
-      [&](std::size_t i) { placed[i] = embed_unit(balls[i], words[placements[i].word]) ? 1 : 0; },
-      kUnitsPerTask);
-  for (std::uint32_t i = 0; i < placements.size(); ++i) {
-    if (placed[i] == 0) embedding.failed.push_back(i);
-  }
-  return embedding;
+  });
 }
 
 std::vector<Reading> IieScheme::Bound::read() const {
@@ -345,12 +330,12 @@ std::vector<Reading> IieScheme::Bound::read() const {
       centres.size(),
       [&](std::size_t i) {
         centres[i] = ground_.mean_of(
-            points_within(surface_.halfedges, sites[i], ground_.centre_rings).value());
+            points_within(surface().halfedges, sites[i], ground_.centre_rings).value());
       },
       kUnitsPerTask);
   const std::vector<BallInvariants> invariants =
-      all_ball_invariants(surface_.mesh.positions, surface_.mesh.triangles, index_,
-                          sites_->at_boundary, centres, radius_, ground_.most_triangles);
+      all_ball_invariants(mesh().positions, mesh().triangles, index_, sites_->at_boundary, centres,
+                          radius_, ground_.most_triangles);
   const std::uint32_t marker_mask = (1U << scheme_.marker_bits_) - 1;
   std::vector<Reading> readings;
   std::vector<Vec3> places;
@@ -372,18 +357,27 @@ std::vector<Reading> IieScheme::Bound::read() const {
   return keep_best_apart(std::move(readings), places, radius_);
 }
 
+// Every site is read: whether a reading stays depends on those about it.
+std::vector<Reading> IieScheme::Bound::read_at(std::span<const std::uint32_t> anchors) const {
+  std::vector<Reading> readings = read();
+  std::erase_if(readings, [&](const Reading& reading) {
+    return !std::binary_search(anchors.begin(), anchors.end(), reading.anchor);
+  });
+  return readings;
+}
+
 // The points within the ball; where that is no ball any more, those of its centre.
 PointLists IieScheme::Bound::points_of(std::span<const std::uint32_t> anchors) const {
   PointLists lists;
   for (const std::uint32_t anchor : anchors) {
     std::vector<std::uint32_t> points;
-    if (anchor < surface_.mesh.positions.size()) {
-      points = points_within(surface_.halfedges, anchor, scheme_.options_.centre_rings)
+    if (anchor < mesh().positions.size()) {
+      points = points_within(surface().halfedges, anchor, scheme_.options_.centre_rings)
                    .value_or(std::vector<std::uint32_t>{anchor});
       const auto near =
           ground_.index.triangles_in_ball(ground_.mean_of(points), radius_, ground_.most_triangles);
       for (const std::uint32_t triangle : near.value_or(std::vector<std::uint32_t>{})) {
-        const Triangle& corners = surface_.mesh.triangles[triangle];
+        const Triangle& corners = mesh().triangles[triangle];
         points.insert(points.end(), corners.begin(), corners.end());
       }
     }

@@ -43,11 +43,12 @@ class IieScheme final : public Scheme {
   // radius or number of rings out of range.
   IieScheme(const WordCode& code, const IieOptions& options);
 
-  // Anchors are points. All calls are parallel: find_units and read take O(sites * triangles a
-  // ball), costs O(chosen * (triangles a ball + words)). Costs come from a table of the invariants
-  // along each centre's way and are good to about a hundredth of a cell; the balls of the units
-  // asked about are kept for embed, some 2 kB each. Of several readings within one ball only the
-  // best centred stays: two units never lie so close.
+  // Binds the scheme: builds a spatial index, O(t log t) for t triangles, and finds the sites.
+  // Anchors are points. All calls are parallel: find_units, read and read_at take O(sites *
+  // triangles a ball), costs O(chosen * (triangles a ball + words)). Costs come from a table of the
+  // invariants along the way of each centre and are good to about a hundredth of a cell; the balls
+  // of the chosen units are kept for embed, some 2 kB each. Of several readings within one radius
+  // only the best centred stays: two units never lie so close.
   [[nodiscard]] std::unique_ptr<BoundScheme> bind(const Surface& surface) const override;
 
  private:

@@ -7,7 +7,8 @@
 namespace triglyph {
 
 struct IieOptions : SchemeOptions {
-  // Radius of the balls in mean edge lengths of the mesh; or, if `radius` > 0, in model units.
+  // The radius of the balls in mean edge lengths of the mesh; or, if `radius` > 0, that in model
+  // units.
   double radius_edges = 3.5;
   double radius = 0;
   // Anchors are points whose connectivity beats that of all points within so many rings; 0: any
@@ -15,7 +16,7 @@ struct IieOptions : SchemeOptions {
   int site_rings = 0;
   // A ball's centre is the mean of the points within so many rings of its anchor.
   int centre_rings = 1;
-  // Parts whose second best value extraction tries if the best ones make no message.
+  // The number of parts whose second best value extraction tries if the best ones make no message.
   int doubtful_parts = 0;
 
   // A message's cells survive noise of 0.1 %; with fill they need only survive rounding.

@@ -1,4 +1,4 @@
-// How much of a ball, and of its sphere, lies inside a surface, exactly.
+// The shares of a ball and of its sphere that lie inside a surface, exactly.
 // Pottmann, Wallner, Huang, Yang. Integral invariants for robust geometry processing. CAGD 26
 // (2009); Wang, Hu. Optimization approach for 3D model watermarking by linear binary programming.
 // CAGD 27 (2010). The closed form for triangle meshes is ours, see docs/schemes.md.
@@ -18,19 +18,20 @@ struct BallInvariants {
   double volume = 0;  // share of the ball that lies inside, 0..1; 1/2 on a plane
 };
 
-// Invariants of the ball of `radius` > 0 about `centre`. `triangles` must hold every triangle that
-// meets the ball (others do no harm), of a surface that is closed and consistently wound as far as
-// the ball sees; several sheets may. Degenerate triangles count nothing. A centre on the surface is
-// taken for one just inside. Inside out gives 1 - x.
-// O(triangles): a few arc tangents each.
+// Returns the invariants of the ball of `radius` > 0, model units, about `centre`. `triangles` must
+// name every triangle that meets the ball; others do no harm. As far as the ball reaches, the
+// surface must be closed and consistently wound; several sheets may pass through the ball.
+// Degenerate triangles do not count. A centre on the surface counts as inside. A surface turned
+// inside out gives 1 - x in place of x. O(triangles), a few arc tangents each.
 [[nodiscard]] BallInvariants ball_invariants(std::span<const Vec3> positions,
                                              std::span<const Triangle> mesh,
                                              std::span<const std::uint32_t> triangles,
                                              const Vec3& centre, double radius);
 
-// The same about every centre; NaN where the ball meets a triangle marked as unfit (at a boundary,
-// say), or more than `most` triangles. `unfit`: one mark a triangle. Parallel, the same for any
-// number of threads. `index` of the same triangles. O(centres * triangles a ball).
+// Returns the invariants of the balls about all centres; NaN where a ball meets an unfit triangle
+// (at a boundary, say) or more than `most` triangles. `unfit` holds a mark for each triangle, and
+// `index` is of the same triangles. Parallel; the result does not depend on the number of threads.
+// O(centres * triangles a ball).
 [[nodiscard]] std::vector<BallInvariants> all_ball_invariants(
     std::span<const Vec3> positions, std::span<const Triangle> mesh, const SpatialIndex& index,
     std::span<const char> unfit, std::span<const Vec3> centres, double radius, std::size_t most);

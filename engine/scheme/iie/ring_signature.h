@@ -1,4 +1,6 @@
-// Names for points by the connectivity around them: what no noise, rounding or motion changes.
+// Signatures of points by the connectivity around them, which no noise, rounding or motion changes.
+//
+// Weisfeiler, Leman. The reduction of a graph to canonical form (1968): colour refinement.
 #pragma once
 
 #include <cstdint>
@@ -8,15 +10,15 @@
 
 namespace triglyph {
 
-// A keyed hash of each point's one-ring, two rings deep: of the valences around it in their cyclic
-// order, and of theirs. The same wherever the ring starts, different for the mirrored order. 0
-// where the two rings are not complete (at a boundary, or where several fans touch). O(halfedges),
-// parallel. By colour refinement: Weisfeiler, Leman (1968).
+// Returns a keyed hash of the two rings around each point: of the valences in its ring in their
+// cyclic order, and of those in the rings of its neighbours. The hash does not depend on where a
+// ring starts, but differs for the mirrored order. It is 0 where the two rings are not complete, at
+// a boundary or where several fans touch. Parallel, O(halfedges).
 [[nodiscard]] std::vector<std::uint64_t> ring_signatures(const Halfedges& halfedges,
                                                          std::size_t points, std::uint64_t seed);
 
-// Calls visit(other) for the points next to `point`, which must have a single closed fan, counter-
-// clockwise. Returns false, and stops, if the fan is open.
+// Calls visit(other) for the neighbours of `point` counter-clockwise. Returns false, and stops, at
+// a boundary. Precondition: the point has a single fan.
 template <typename Visit>
 bool visit_ring(const Halfedges& halfedges, std::uint32_t point, const Visit& visit) {
   const Halfedge first = halfedges.outgoing(point);

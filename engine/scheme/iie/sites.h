@@ -1,4 +1,5 @@
-// What IIE needs of a surface's connectivity alone: no motion, rounding or noise changes it.
+// The places where IIE may put units, which depend on the connectivity alone: no motion, rounding
+// or noise changes them.
 #pragma once
 
 #include <algorithm>
@@ -16,14 +17,14 @@ struct IieSites {
   std::vector<char> at_boundary;      // does the triangle have an edge without a neighbour?
 };
 
-// Sites are points whose keyed ring signature none within `rings` rings beats; with 0 rings every
-// point that has a signature. Parallel; O(halfedges) and the rings of the few points that beat
-// their neighbours.
+// Returns the sites of a surface: the points whose keyed ring signature none within `rings` rings
+// beats, or with 0 rings all points that have a signature. Parallel, O(halfedges) and the rings of
+// the few points that beat their neighbours.
 [[nodiscard]] IieSites find_sites(const Halfedges& halfedges, std::size_t points, int rings,
                                   std::uint64_t seed);
 
-// Points within so many rings of one, itself among them, ascending, as long as accept(other) says
-// yes to each; nothing once it says no, or if a fan is open.
+// Returns the points within so many rings of a point, itself among them, ascending. Returns nothing
+// once accept(other) returns false for one of them, or if a fan is open. O(n log n) for n points.
 template <typename Accept>
 std::optional<std::vector<std::uint32_t>> accepted_points_within(const Halfedges& halfedges,
                                                                  std::uint32_t point, int rings,
@@ -50,7 +51,8 @@ std::optional<std::vector<std::uint32_t>> accepted_points_within(const Halfedges
   return found;
 }
 
-// All points within so many rings of one, itself among them, ascending; nothing if a fan is open.
+// Returns all points within so many rings of a point, itself among them, ascending; nothing if a
+// fan is open.
 [[nodiscard]] inline std::optional<std::vector<std::uint32_t>> points_within(
     const Halfedges& halfedges, std::uint32_t point, int rings) {
   return accepted_points_within(halfedges, point, rings, [](std::uint32_t) { return true; });

@@ -35,7 +35,7 @@ struct FlatTriangle {
   }
 };
 
-// Degenerate triangles give base or height 0 (or NaN), never an exception.
+// Lays a triangle into the plane. A degenerate one gives base or height 0, or NaN. O(1).
 [[nodiscard]] inline FlatTriangle flatten(const Vec3& start, const Vec3& end, const Vec3& apex) {
   const Vec3 base = end - start;
   const Vec3 side = apex - start;
@@ -44,8 +44,9 @@ struct FlatTriangle {
           cross(base, side).norm() / base_squared};
 }
 
-// The x of an apex of the given shape that lies nearest to `near_x`; nothing if no triangle has the
-// shape. The line at the height meets the circle of Apollonius of the ratio where
+// Returns the x of the apex of the given shape that lies nearest to `near_x`, in units of the base;
+// nothing if no triangle has the shape. The line at the height meets the circle of Apollonius of
+// the ratio where
 //   T y^2 - y + T (1/4 + height^2) = 0,   T = tanh(log_ratio), y = x - 1/2.
 [[nodiscard]] inline std::optional<double> apex_x(double height, double tanh_log_ratio,
                                                   double near_x) {
@@ -59,14 +60,16 @@ struct FlatTriangle {
   return 0.5 + (std::abs(inner - near_y) <= std::abs(outer - near_y) ? inner : outer);
 }
 
-// Where the three corners of a flat triangle go, in its own plane, if it takes another shape by the
-// similarity that moves the corners least in the sense of least squares (complex Procrustes). Model
-// units, origin at the base's start, x along the base.
+// The three corners of a triangle in its own plane, model units: the origin lies at the start of
+// the unmoved base, x runs along it.
 struct FlatCorners {
   std::array<double, 3> x{};  // start, end, apex
   std::array<double, 3> y{};
 };
 
+// Returns where the corners go if the triangle takes the shape whose apex lies at (x, height), in
+// units of the base: that copy of the shape, among all similar ones, that moves the corners least
+// in the sense of least squares (complex Procrustes). O(1).
 [[nodiscard]] FlatCorners reshape(const FlatTriangle& triangle, double x, double height);
 
 }  // namespace triglyph

@@ -4,11 +4,9 @@
 #include <optional>
 
 #include "engine/base/error.h"
-#include "engine/base/once.h"
 #include "engine/base/parallel.h"
-#include "engine/mesh/edge_length.h"
 #include "engine/scheme/cost_rows.h"
-#include "engine/scheme/local_cost.h"
+#include "engine/scheme/surface_binding.h"
 
 namespace triglyph {
 namespace {
@@ -16,11 +14,16 @@ namespace {
 using Quadruple = std::array<std::uint32_t, 6>;  // v0, v1, v2 of M from its base on, S, D1, D2
 
 // All in units of the triangle's base.
-constexpr double kMinHeight = 0.02;         // flatter triangles have no stable plane to move in
-constexpr double kLongestGap = 0.01;        // the base stays this much longer than the other edges
-constexpr double kMaxMove = 0.5;            // a cell farther away is not worth a unit
-constexpr std::size_t kUnitsPerBlock = 16;  // rows of the cost matrix a thread takes at a time
-constexpr int kMaxNumberBits = 8;           // a channel's 16 bits at most are shared by two numbers
+
+// The plane of a flatter triangle, in which its points move, turns with every rounding of them.
+constexpr double kMinHeight = 0.02;
+// M's base stays so much longer than its other edges: readers know the base by its length, and
+// rounding must not make another edge the longest.
+constexpr double kLongestGap = 0.01;
+// A point that had to move farther would be seen, and would flip a face as a rule.
+constexpr double kMaxMove = 0.5;
+
+constexpr int kMaxNumberBits = 8;  // two numbers share the bits of a channel, 16 at most
 
 // Which corner of triangle `face` the longest edge leaves; the first of equals.
 std::uint32_t longest_side(const Mesh& mesh, std::uint32_t face) {
@@ -193,9 +196,10 @@ class TsqScheme::ApexMoves {
 };
 
 // The scheme on one surface.
-class TsqScheme::Bound final : public BoundScheme {
+class TsqScheme::Bound final : public SurfaceBinding {
  public:
-  Bound(const TsqScheme& scheme, const Surface& surface) : scheme_(scheme), surface_(surface) {}
+  Bound(const TsqScheme& scheme, const Surface& surface)
+      : SurfaceBinding(surface, scheme.options_), scheme_(scheme) {}
 
   [[nodiscard]] UnitSet find_units() const override;
   [[nodiscard]] CostMatrix costs(const UnitSet& units, std::span<const std::uint32_t> chosen,
@@ -203,22 +207,17 @@ class TsqScheme::Bound final : public BoundScheme {
   [[nodiscard]] Embedding embed(const UnitSet& units, std::span<const Placement> placements,
                                 std::span<const Word> words) const override;
   [[nodiscard]] std::vector<Reading> read() const override;
+  [[nodiscard]] std::vector<Reading> read_at(std::span<const std::uint32_t> anchors) const override;
   [[nodiscard]] PointLists points_of(std::span<const std::uint32_t> anchors) const override;
   [[nodiscard]] std::unique_ptr<BoundScheme> moved_to(const Surface& moved) const override {
     return std::make_unique<Bound>(scheme_, moved);
   }
-  [[nodiscard]] double cell_size() const override {
-    return scheme_.options_.step * mean_edge_length(surface_.mesh);
-  }
 
  private:
-  [[nodiscard]] const LocalCost& local_cost() const {
-    return local_cost_.get([&] { return LocalCost(surface_, scheme_.options_.cost); });
-  }
+  // Appends what a triangle shows, if it shows the marker.
+  void read_face(std::uint32_t face, std::vector<Reading>& out) const;
 
   const TsqScheme& scheme_;
-  const Surface surface_;
-  Once<LocalCost> local_cost_;
 };
 
 std::unique_ptr<BoundScheme> TsqScheme::bind(const Surface& surface) const {
@@ -296,11 +295,10 @@ UnitSet TsqScheme::Bound::find_units() const {
     Quadruple points;
   };
   const auto found = parallel_collect<Found>(
-      surface_.mesh.triangles.size(), [&](std::size_t face, std::vector<Found>& out) {
-        const auto points =
-            quadruple_of(surface_, static_cast<std::uint32_t>(face),
-                         longest_side(surface_.mesh, static_cast<std::uint32_t>(face)));
-        if (points && scheme_.embed_marker(surface_.mesh, *points)) {
+      mesh().triangles.size(), [&](std::size_t face, std::vector<Found>& out) {
+        const auto points = quadruple_of(surface(), static_cast<std::uint32_t>(face),
+                                         longest_side(mesh(), static_cast<std::uint32_t>(face)));
+        if (points && scheme_.embed_marker(mesh(), *points)) {
           out.push_back({static_cast<std::uint32_t>(face), *points});
         }
       });
@@ -336,7 +334,7 @@ CostMatrix TsqScheme::Bound::costs(const UnitSet& units, std::span<const std::ui
   const LocalCost& local = local_cost();
   return fill_cost_rows(chosen.size(), words.size(), [&](std::size_t row, std::span<float> costs) {
     const auto points = units.moved[chosen[row]];
-    const auto marked = scheme_.embed_marker(surface_.mesh, points);
+    const auto marked = scheme_.embed_marker(mesh(), points);
     if (!marked) return;
     const std::array<Move, 3> corners{{{points[0], marked->corners[0]},
                                        {points[1], marked->corners[1]},
@@ -348,7 +346,7 @@ CostMatrix TsqScheme::Bound::costs(const UnitSet& units, std::span<const std::ui
       parts[i] =
           values_of_each(scheme_.outer_channels_[i].bits(), values[i], [&](std::uint32_t bits) {
             if (local.goes_by_distance()) return local.of_distance(moves.move(bits));
-            const auto apex = scheme_.place_apex(surface_.mesh, points, *marked, i, bits);
+            const auto apex = scheme_.place_apex(mesh(), points, *marked, i, bits);
             return apex ? local.of_part(std::array<Move, 1>{{{points[3 + i], *apex}}})
                         : kInfeasible;
           });
@@ -362,32 +360,23 @@ CostMatrix TsqScheme::Bound::costs(const UnitSet& units, std::span<const std::ui
 
 Embedding TsqScheme::Bound::embed(const UnitSet& units, std::span<const Placement> placements,
                                   std::span<const Word> words) const {
-  Embedding embedding{surface_.mesh.positions, {}};
-  const auto place = [&](const Placement& placement) {
-    const auto points = units.moved[placement.unit];
-    const std::optional<Marked> marked = scheme_.embed_marker(surface_.mesh, points);
+  return embed_each(placements.size(), [&](std::size_t index, std::vector<Vec3>& positions) {
+    const auto points = units.moved[placements[index].unit];
+    const std::optional<Marked> marked = scheme_.embed_marker(mesh(), points);
     if (!marked) return false;
-    const auto bits = scheme_.outer_bits(words[placement.word]);
+    const auto bits = scheme_.outer_bits(words[placements[index].word]);
     std::array<Vec3, 3> apexes;
     for (std::size_t i = 0; i < 3; ++i) {
-      const auto apex = scheme_.place_apex(surface_.mesh, points, *marked, i, bits[i]);
+      const auto apex = scheme_.place_apex(mesh(), points, *marked, i, bits[i]);
       if (!apex) return false;
       apexes[i] = *apex;
     }
     for (std::size_t i = 0; i < 3; ++i) {
-      embedding.positions[points[i]] = marked->corners[i];
-      embedding.positions[points[3 + i]] = apexes[i];
+      positions[points[i]] = marked->corners[i];
+      positions[points[3 + i]] = apexes[i];
     }
     return true;
-  };
-  std::vector<char> placed(placements.size());
-  parallel_for(
-      placements.size(), [&](std::size_t i) { placed[i] = place(placements[i]) ? 1 : 0; },
-      kUnitsPerBlock);
-  for (std::uint32_t i = 0; i < placements.size(); ++i) {
-    if (placed[i] == 0) embedding.failed.push_back(i);
-  }
-  return embedding;
+  });
 }
 
 bool TsqScheme::has_marker(const Mesh& mesh, std::uint32_t base, Reading& reading) const {
@@ -426,26 +415,36 @@ void TsqScheme::read_outer(const Mesh& mesh, const Quadruple& points, Reading& r
   reading.word = {bits[0], bits[1] | bits[2] << outer_channels_[1].bits()};
 }
 
+void TsqScheme::Bound::read_face(std::uint32_t face, std::vector<Reading>& out) const {
+  Reading reading;
+  reading.anchor = face;
+  const std::uint32_t base = longest_side(mesh(), face);
+  if (!scheme_.has_marker(mesh(), base, reading)) return;  // most faces end here
+  const auto points = quadruple_of(surface(), face, base);
+  if (!points) return;
+  scheme_.read_outer(mesh(), *points, reading);
+  if (std::isfinite(reading.weight)) out.push_back(reading);
+}
+
 std::vector<Reading> TsqScheme::Bound::read() const {
-  const auto read_face = [&](std::size_t face, std::vector<Reading>& out) {
-    Reading reading;
-    reading.anchor = static_cast<std::uint32_t>(face);
-    const std::uint32_t base = longest_side(surface_.mesh, reading.anchor);
-    if (!scheme_.has_marker(surface_.mesh, base, reading)) return;  // most faces end here
-    const auto points = quadruple_of(surface_, reading.anchor, base);
-    if (!points) return;
-    scheme_.read_outer(surface_.mesh, *points, reading);
-    if (std::isfinite(reading.weight)) out.push_back(reading);
-  };
-  return parallel_collect<Reading>(surface_.mesh.triangles.size(), read_face);
+  return parallel_collect<Reading>(mesh().triangles.size(),
+                                   [&](std::size_t face, std::vector<Reading>& out) {
+                                     read_face(static_cast<std::uint32_t>(face), out);
+                                   });
+}
+
+std::vector<Reading> TsqScheme::Bound::read_at(std::span<const std::uint32_t> anchors) const {
+  return parallel_collect<Reading>(anchors.size(), [&](std::size_t i, std::vector<Reading>& out) {
+    if (anchors[i] < mesh().triangles.size()) read_face(anchors[i], out);
+  });
 }
 
 PointLists TsqScheme::Bound::points_of(std::span<const std::uint32_t> anchors) const {
   PointLists lists;
   for (const std::uint32_t face : anchors) {
     std::optional<Quadruple> points;
-    if (face < surface_.mesh.triangles.size()) {
-      points = quadruple_of(surface_, face, longest_side(surface_.mesh, face));
+    if (face < mesh().triangles.size()) {
+      points = quadruple_of(surface(), face, longest_side(mesh(), face));
     }
     if (points) std::sort(points->begin(), points->end());
     lists.append(points ? std::span<const std::uint32_t>(*points)

@@ -30,14 +30,16 @@ namespace triglyph {
 
 class TsqScheme final : public Scheme {
  public:
+  // Throws Error Usage if the step is out of range.
   TsqScheme(const WordCode& code, const TsqOptions& options);
 
-  // Anchors are triangles. All calls are parallel: find_units and read take O(triangles), costs
-  // O(chosen * words); the cost of the marker is part of every entry.
+  // Binds the scheme; O(1). Anchors are triangles. All calls are parallel: find_units and read take
+  // O(triangles), read_at O(anchors), costs O(chosen * words), embed O(placements). The cost of
+  // the marker is part of every entry.
   [[nodiscard]] std::unique_ptr<BoundScheme> bind(const Surface& surface) const override;
 
  private:
-  // The two quantised numbers of one triangle's shape.
+  // The quantisers of the two numbers of a triangle's shape.
   struct Channel {
     Quantiser height;
     Quantiser log_ratio;
@@ -50,7 +52,7 @@ class TsqScheme final : public Scheme {
       return bits >> height.bits();
     }
   };
-  // M after the marker went in: where its corners went, and the outer triangles on their new bases.
+  // M with the marker embedded: its moved corners, and the outer triangles on their moved bases.
   struct Marked {
     std::array<Vec3, 3> corners;
     std::array<FlatTriangle, 3> outer;  // S, D1, D2
@@ -65,7 +67,7 @@ class TsqScheme final : public Scheme {
   class ApexChoices;
   class ApexMoves;
 
-  // Where the apex of outer triangle i goes for this value.
+  // Returns where the apex of outer triangle i must go to carry these bits.
   [[nodiscard]] std::optional<Vec3> place_apex(const Mesh& mesh,
                                                std::span<const std::uint32_t> points,
                                                const Marked& marked, std::size_t i,
