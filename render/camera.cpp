@@ -13,7 +13,7 @@
 namespace triglyph {
 namespace {
 
-constexpr double kMargin = 1.06;
+constexpr double kMarginFactor = 1.06;
 constexpr double kMinAreaShare = 0.75;  // of the greatest area that any of the views shows
 
 // Returns the axes of the view in model coordinates.
@@ -55,7 +55,7 @@ double shown_area(const Mesh& mesh, const Vec3& towards_viewer) {
       [](double a, double b) { return a + b; });
 }
 
-double number_in(const std::string& text, std::size_t begin, std::size_t end) {
+double number_from(const std::string& text, std::size_t begin, std::size_t end) {
   double value = 0;
   const char* last = text.data() + end;
   const auto [stop, error] = std::from_chars(text.data() + begin, last, value);
@@ -94,8 +94,8 @@ View view_named(const std::string& name) {
   if (comma == std::string::npos) {
     throw Error(ErrorCode::Usage, {}, "", "no view named '" + name + "'");
   }
-  view.azimuth = number_in(text, 0, comma);
-  view.elevation = number_in(text, comma + 1, text.size());
+  view.azimuth = number_from(text, 0, comma);
+  view.elevation = number_from(text, comma + 1, text.size());
   return view;
 }
 
@@ -125,7 +125,7 @@ Camera whole_view(std::span<const Vec3> points, const View& view, double aspect)
   camera.centre =
       camera.right * middle[0] + camera.up * middle[1] + camera.towards_viewer() * middle[2];
   const Vec3 half = (box.high - box.low) / 2;
-  camera.half_height = kMargin * std::max(half[1], half[0] / aspect);
+  camera.half_height = kMarginFactor * std::max(half[1], half[0] / aspect);
   if (!(camera.half_height > 0)) camera.half_height = half[2] > 0 ? half[2] : 1;
   return camera;
 }

@@ -11,7 +11,7 @@
 namespace triglyph {
 namespace {
 
-constexpr int kMargin = 14;
+constexpr int kMarginPixels = 14;
 constexpr int kTitleHeight = 34;
 constexpr int kTitleSize = 22;
 constexpr int kNoteSize = 17;
@@ -60,13 +60,14 @@ Image arrange(const std::vector<Panel>& panels, const Colour& background) {
   }
   const int columns = columns_of(panels.size());
   const int rows = (static_cast<int>(panels.size()) + columns - 1) / columns;
-  const int cell_width = width + kMargin;
+  const int cell_width = width + kMarginPixels;
   const int cell_height = kTitleHeight + height + kNoteHeight;
-  Image picture(columns * cell_width + kMargin, rows * cell_height + kMargin, background);
+  Image picture(columns * cell_width + kMarginPixels, rows * cell_height + kMarginPixels,
+                background);
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const Panel& panel = panels[i];
-    const int left = kMargin + static_cast<int>(i) % columns * cell_width;
-    const int top = kMargin + static_cast<int>(i) / columns * cell_height;
+    const int left = kMarginPixels + static_cast<int>(i) % columns * cell_width;
+    const int top = kMarginPixels + static_cast<int>(i) / columns * cell_height;
     const int middle = left + width / 2;
     draw_text(panel.title, middle, top + kTitleHeight / 2, {kTitleSize, width, TextAnchor::Middle},
               picture);

@@ -13,7 +13,7 @@
 namespace triglyph {
 namespace {
 
-constexpr double kDotPixels = 1.8;  // radius of a moved point
+constexpr double kUnitDotPixels = 1.8;  // radius of a moved point
 
 std::vector<std::uint32_t> anchors_of(const Marking& marking) {
   std::vector<std::uint32_t> anchors;
@@ -113,7 +113,7 @@ class PaperFigure {
   void show_units(const Mesh& after, const Marking& marking, Scene& scene) const {
     const std::vector<std::uint32_t> anchors = anchors_of(marking);
     if (mark_options_.scheme == "aie") {
-      const double radius = kDotPixels * 2 * camera_.half_height / options_.height;
+      const double radius = kUnitDotPixels * 2 * camera_.half_height / options_.height;
       for (std::size_t p = 0; p < after.positions.size(); ++p) {
         if (after.positions[p] != mesh_.positions[p]) {
           scene.dots.push_back({after.positions[p], radius});

@@ -22,15 +22,13 @@
 namespace triglyph {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kAllFinite = std::numeric_limits<float>::max();
 // Unmatched units for which growing forests is cheaper than bisection.
 constexpr std::uint32_t kFewMissing = 4;
 
 // Returns the least cost of every unit over the words with is_chosen[word] == choice.
 std::vector<float> find_unit_minima(const CostMatrix& costs,
                                     std::span<const std::uint8_t> is_chosen, std::uint8_t choice) {
-  std::vector<float> minima(costs.units, kInfinity);
+  std::vector<float> minima(costs.units, kInfeasible);
   parallel_blocks(
       costs.units,
       [&](std::size_t begin, std::size_t end) {
@@ -72,7 +70,7 @@ float bound_by_served_words(const CostMatrix& costs, std::span<const std::uint32
     if (scarcity.is_scarce_word[word] != 0 || demand[word] == 0) return;
     const auto column = costs.column(static_cast<std::uint32_t>(word));
     std::vector<float> open;
-    float least = kInfinity;
+    float least = kInfeasible;
     for (std::size_t unit = 0; unit < column.size(); ++unit) {
       if (scarcity.is_scarce_unit[unit] != 0) continue;
       least = std::min(least, column[unit]);
@@ -155,7 +153,7 @@ class Forest {
   Forest(const CostMatrix& costs, Threshold& threshold)
       : costs_(costs),
         threshold_(threshold),
-        slack_(costs.units, kInfinity),
+        slack_(costs.units, kInfeasible),
         cheapest_(costs.units, kNoWord),
         word_is_in_(costs.words, 0),
         unit_of_word_(costs.words, 0) {}
@@ -166,9 +164,9 @@ class Forest {
       if (threshold_.matching.unserved[word] > 0) add_word(word);
     }
     for (;;) {
-      float least = kInfinity;
+      float least = kInfeasible;
       for (const float slack : slack_) least = slack >= 0 && slack < least ? slack : least;
-      if (least == kInfinity) return false;
+      if (least == kInfeasible) return false;
       threshold_.value = std::max(threshold_.value, least);
       for (std::uint32_t unit = 0; unit < costs_.units; ++unit) {
         if (slack_[unit] < 0 || slack_[unit] > threshold_.value) continue;

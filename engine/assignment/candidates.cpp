@@ -8,7 +8,6 @@
 namespace triglyph {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kLanes = 8;            // independent minima, so that the loop vectorises
 constexpr std::size_t kChunksPerWanted = 2;  // more give a sharper cut, fewer a cheaper one
 constexpr std::size_t kTiesPerWanted = 2;    // most tied units in a list, per pair wanted

@@ -2,10 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
 namespace triglyph {
+
+// The price of a unit that is excluded, and the bound of an exhaustive list.
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct Candidate {
   std::uint32_t unit;

@@ -23,8 +23,6 @@ std::uint64_t count_copies(std::span<const std::uint32_t> demand) {
   return copies;
 }
 
-constexpr float kAllFinite = std::numeric_limits<float>::max();
-
 // Returns the costs with those above the limit replaced by infinity.
 CostMatrix mask_above(const CostMatrix& costs, float limit) {
   CostMatrix masked{costs.units, costs.words, std::vector<float>(costs.values.size(), kInfeasible)};

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -50,6 +51,9 @@ class PairGraph {
   std::size_t stride_ = 0;
   std::vector<std::uint64_t> bits_;
 };
+
+// The limit that admits every finite cost.
+inline constexpr float kAllFinite = std::numeric_limits<float>::max();
 
 // Returns the pairs with finite cost <= limit. O(units * words), parallel.
 [[nodiscard]] PairGraph find_pairs_within(const CostMatrix& costs, float limit);

@@ -28,7 +28,6 @@
 namespace triglyph {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Tied best units per copy that make a matching worthwhile: distinct costs have hardly more than
 // one.
 constexpr std::size_t kManyTies = 2;

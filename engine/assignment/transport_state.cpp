@@ -11,7 +11,6 @@
 namespace triglyph {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Candidates beyond a word's copies, so that its bids find a next best unit.
 constexpr std::size_t kSpareCandidates = 16;
 // Units per copy from which the surplus units stay free instead of carrying a dummy word, whose

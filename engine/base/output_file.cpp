@@ -19,7 +19,11 @@ std::filesystem::path temporary_name(const std::filesystem::path& path) {
   static std::atomic<unsigned> counter{0};
   std::filesystem::path name = ".";
   name += path.stem();
-  name += "." + std::to_string(getpid()) + "-" + std::to_string(counter++) + ".part";
+  name += ".";
+  name += std::to_string(getpid());
+  name += "-";
+  name += std::to_string(counter++);
+  name += ".part";
   name += path.extension();
   return path.parent_path() / name;
 }

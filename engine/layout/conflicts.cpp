@@ -5,7 +5,7 @@
 namespace triglyph {
 namespace {
 
-constexpr std::array<std::string_view, 2> kNames = {"read-write", "shared-point"};
+constexpr std::array<std::string_view, 2> kRuleNames = {"read-write", "shared-point"};
 
 // Returns the lists of the units at each point, ascending.
 PointLists transpose(const PointLists& lists, std::size_t points) {
@@ -24,11 +24,11 @@ PointLists transpose(const PointLists& lists, std::size_t points) {
 }  // namespace
 
 std::span<const std::string_view> conflict_names() {
-  return kNames;
+  return kRuleNames;
 }
 
 std::string_view name_of(ConflictRule rule) {
-  return kNames.at(static_cast<std::size_t>(rule));
+  return kRuleNames.at(static_cast<std::size_t>(rule));
 }
 
 Conflicts::Conflicts(const PointLists& moved, const PointLists& read, std::size_t points,

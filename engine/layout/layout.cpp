@@ -10,28 +10,29 @@ namespace triglyph {
 namespace {
 
 // by LayoutMethod
-constexpr std::array<std::string_view, 6> kNames = {"first-fit",     "min-degree", "static-degree",
-                                                    "random-degree", "ant-colony", "local-search"};
+constexpr std::array<std::string_view, 6> kLayoutNames = {
+    "first-fit", "min-degree", "static-degree", "random-degree", "ant-colony", "local-search"};
 
 }  // namespace
 
 std::span<const std::string_view> layout_names() {
-  return kNames;
+  return kLayoutNames;
 }
 
 std::string_view name_of(LayoutMethod method) {
-  return kNames.at(static_cast<std::size_t>(method));
+  return kLayoutNames.at(static_cast<std::size_t>(method));
 }
 
 LayoutMethod layout_method(const std::string& name) {
-  const auto at = std::find(kNames.begin(), kNames.end(), name);
-  if (at == kNames.end()) throw Error(ErrorCode::Usage, {}, "", "unknown layout '" + name + "'");
-  return static_cast<LayoutMethod>(at - kNames.begin());
+  const auto at = std::find(kLayoutNames.begin(), kLayoutNames.end(), name);
+  if (at == kLayoutNames.end())
+    throw Error(ErrorCode::Usage, {}, "", "unknown layout '" + name + "'");
+  return static_cast<LayoutMethod>(at - kLayoutNames.begin());
 }
 
 std::vector<std::uint32_t> choose_layout(const Conflicts& conflicts, const LayoutOptions& options) {
   using Solver = std::vector<std::uint32_t> (*)(const Conflicts&, const LayoutOptions&);
-  static constexpr std::array<Solver, kNames.size()> kSolvers = {
+  static constexpr std::array<Solver, kLayoutNames.size()> kSolvers = {
       first_fit_layout,     min_degree_layout, static_degree_layout,
       random_degree_layout, ant_colony_layout, local_search_layout};
   return kSolvers.at(static_cast<std::size_t>(options.method))(conflicts, options);

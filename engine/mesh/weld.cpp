@@ -11,7 +11,7 @@
 namespace triglyph {
 namespace {
 
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kEmptySlot = std::numeric_limits<std::uint32_t>::max();
 // Vertices below which one table fits the cache, and threads would cost more than they save.
 constexpr std::size_t kSmall = 1 << 16;
 constexpr std::size_t kParts = 256;      // of the hash space; enough to balance the threads
@@ -37,13 +37,14 @@ bool are_equal(const Vec3& a, const Vec3& b) {
 class FirstTable {
  public:
   FirstTable(std::span<const Vec3> vertices, std::size_t entries)
-      : vertices_(vertices), slots_(std::bit_ceil(std::max<std::size_t>(2 * entries, 16)), kNone) {}
+      : vertices_(vertices),
+        slots_(std::bit_ceil(std::max<std::size_t>(2 * entries, 16)), kEmptySlot) {}
 
   // Returns the first vertex added with the coordinates of vertex i, which may be i itself.
   std::uint32_t add(std::uint32_t i, std::uint64_t hash) {
     const std::size_t mask = slots_.size() - 1;
     for (std::size_t slot = hash & mask;; slot = (slot + 1) & mask) {
-      if (slots_[slot] == kNone) return slots_[slot] = i;
+      if (slots_[slot] == kEmptySlot) return slots_[slot] = i;
       if (are_equal(vertices_[slots_[slot]], vertices_[i])) return slots_[slot];
     }
   }

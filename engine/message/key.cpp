@@ -159,6 +159,7 @@ std::string to_hex(std::span<const std::uint8_t> bytes) {
 }
 
 std::vector<std::uint8_t> from_hex(const std::string& text) {
+  if (text.empty()) return {};  // the library takes no null pointer
   std::vector<std::uint8_t> bytes(text.size() / 2);
   std::size_t count = 0;
   const char* end = nullptr;

@@ -29,20 +29,20 @@ Sides sides_of(const Triangle& triangle, std::span<const Vec3> positions) {
 }
 
 // A symmetric 2 x 2 matrix: the metric of a face in the basis of its sides.
-struct Metric {
+struct FaceMetric {
   double aa, ab, bb;
 
   [[nodiscard]] double determinant() const { return aa * bb - ab * ab; }
 };
 
-Metric metric_of(const Sides& sides) {
+FaceMetric metric_of(const Sides& sides) {
   return {dot(sides.a, sides.a), dot(sides.a, sides.b), dot(sides.b, sides.b)};
 }
 
 // Returns the strain energy density from one metric to another, times the area of the first. The
 // stretches s and t are the singular values of the map: s^2 + t^2 and s^2 t^2 are the trace and the
 // determinant of from^-1 to, in any basis.
-double strain_energy(const Metric& from, const Metric& to) {
+double strain_energy(const FaceMetric& from, const FaceMetric& to) {
   const double determinant = from.determinant();
   if (!(determinant > 0)) return 0;
   const double trace = (from.bb * to.aa - 2 * from.ab * to.ab + from.aa * to.bb) / determinant;

@@ -2,18 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/readings.h"
+
 namespace triglyph {
 namespace {
 
 const Message kMessage{'d', 'o', 'u', 'b', 't'};
-
-Reading reading_of(const Word& word, float weight) {
-  Reading reading;
-  reading.word = word;
-  reading.weight = weight;
-  reading.bit_weights.fill(1);
-  return reading;
-}
 
 // Votes for the message in which the wrong value leads in some parts.
 Votes votes_with(const WordCode& code, const std::vector<std::size_t>& wrong_parts) {
@@ -21,8 +15,8 @@ Votes votes_with(const WordCode& code, const std::vector<std::size_t>& wrong_par
   const auto words = code.words_of(kMessage);
   for (std::size_t i = 0; i < words.size(); ++i) {
     const bool wrong = std::find(wrong_parts.begin(), wrong_parts.end(), i) != wrong_parts.end();
-    votes.add(reading_of(words[i], wrong ? 0.5F : 1.0F));
-    votes.add(reading_of({words[i].subscript, words[i].part ^ 5U}, wrong ? 0.6F : 0.2F));
+    votes.add(test::reading_of(words[i], wrong ? 0.5F : 1.0F));
+    votes.add(test::reading_of({words[i].subscript, words[i].part ^ 5U}, wrong ? 0.6F : 0.2F));
   }
   return votes;
 }

@@ -12,7 +12,7 @@
 namespace triglyph {
 namespace {
 
-constexpr double kTolerance = 1e-7;
+constexpr double kExactTolerance = 1e-7;
 
 Mesh lifted_sheet(double height) {
   Mesh sheet = test::flat_grid(6, 6);
@@ -66,12 +66,12 @@ TEST(MeshDistance, IntegratesALinearFunctionExactly) {
 TEST(SampledDistances, AreBelowTheCertifiedOneAndNearIt) {
   const Mesh& ball = test::bumpy_ball().mesh;
   const Mesh coarse = test::decimated(ball, 0.7);
-  const double exact = hausdorff(ball, coarse, kTolerance).symmetric();
+  const double exact = hausdorff(ball, coarse, kExactTolerance).symmetric();
   const TwoWayStatistics by_metro = metro(ball, coarse);
   const TwoWayStatistics by_mesh = mesh_distance(ball, coarse, 0.01);
   for (const TwoWayStatistics& s : {by_metro, by_mesh}) {
     const double sampled = std::max(s.forward.max, s.backward.max);
-    EXPECT_LE(sampled, exact + kTolerance);
+    EXPECT_LE(sampled, exact + kExactTolerance);
     EXPECT_GE(sampled, 0.9 * exact);
     EXPECT_LE(s.forward.mean, s.forward.rms);
     EXPECT_LE(s.forward.rms, s.forward.max);

@@ -18,7 +18,7 @@
 namespace triglyph {
 namespace {
 
-const Message kMessage{'b', 'a', 'l', 'l', 's', ' ', '8', '!'};
+const Message kBallsMessage{'b', 'a', 'l', 'l', 's', ' ', '8', '!'};
 
 // On a mesh of its own, large enough for the message to come back after noise.
 struct Marked {
@@ -26,7 +26,8 @@ struct Marked {
   WordCode code{Key::trial(), options.format};
   std::unique_ptr<Scheme> scheme = make_scheme("iie", code, options.scheme_options);
   test::Solid original{make_sample_shape(SampleShape::Closed, 100000, 11)};
-  Marking marking = mark(original.surface(), kMessage, Key::trial(), options, test::as_float, 1e-7);
+  Marking marking =
+      mark(original.surface(), kBallsMessage, Key::trial(), options, test::as_float, 1e-7);
   Mesh mesh{marking.positions, original.mesh.triangles};
 
   [[nodiscard]] Extraction read(const Mesh& other) const {
@@ -42,14 +43,15 @@ const Marked& marked() {
 
 TEST(Iie, MessageSurvivesNoiseQuantisationMotionAndOrder) {
   ASSERT_EQ(marked().marking.status, MarkStatus::Marked);
-  EXPECT_EQ(marked().read(marked().mesh).message, kMessage);
+  EXPECT_EQ(marked().read(marked().mesh).message, kBallsMessage);
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     EXPECT_EQ(marked().read(test::with_uniform_noise(marked().mesh, 0.0005, seed)).message,
-              kMessage);
-    EXPECT_EQ(marked().read(test::shuffled(marked().mesh, seed)).message, kMessage);
-    EXPECT_EQ(marked().read(test::moved_rigidly_and_scaled(marked().mesh, seed)).message, kMessage);
+              kBallsMessage);
+    EXPECT_EQ(marked().read(test::shuffled(marked().mesh, seed)).message, kBallsMessage);
+    EXPECT_EQ(marked().read(test::moved_rigidly_and_scaled(marked().mesh, seed)).message,
+              kBallsMessage);
   }
-  EXPECT_EQ(marked().read(test::quantised(marked().mesh, 11)).message, kMessage);
+  EXPECT_EQ(marked().read(test::quantised(marked().mesh, 11)).message, kBallsMessage);
   EXPECT_FALSE(marked().read(marked().original.mesh).message);
 }
 

@@ -30,7 +30,7 @@ constexpr double kMinStraightness = 0.02;
 constexpr double kMaxHeight = 1e-3;
 // Greatest move in greatest deviations of the basis: one as far as the basis is wide would be seen,
 // and would flip a face as a rule.
-constexpr double kMaxMove = 1;
+constexpr double kMaxMoveInDeviations = 1;
 // Factor of a lower bound on a distance: rounding takes far less from the distance.
 constexpr double kSurely = 1 - 1e-6;
 // A group holds a quarter of the word and has a table of costs for all its values: 2^8 at most.
@@ -182,7 +182,7 @@ std::optional<AieScheme::Site> AieScheme::site_at(const Surface& surface,
   if (!basis) return std::nullopt;
   const auto around = neighbours_of(surface, *basis, anchor);
   if (!around) return std::nullopt;
-  return Site{*around, basis->norm, kMaxMove * basis->norm.greatest_deviation()};
+  return Site{*around, basis->norm, kMaxMoveInDeviations * basis->norm.greatest_deviation()};
 }
 
 float AieScheme::group_cost(const Mesh& mesh, const LocalCost& local, const Site& site,

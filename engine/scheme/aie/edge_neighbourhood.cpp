@@ -28,7 +28,7 @@ bool walk_ring(const Halfedges& halfedges, Halfedge first, Ring& ring) {
 }
 
 // Of the halfedge a -> b: the spokes from which the rings of a, b, c, d are walked.
-struct Frame {
+struct RingStarts {
   std::array<Halfedge, 4> spokes;  // a -> b, b -> a, c -> a, d -> b: every ring begins with two
                                    // basis points and an outer apex; those of a and b end with an
                                    // outer apex and a basis point, those of c and d with an apex
@@ -36,7 +36,7 @@ struct Frame {
                                    // c's, d's outer apex
 };
 
-Frame frame_of(const Halfedges& halfedges, std::uint32_t edge, bool reversed) {
+RingStarts ring_starts_of(const Halfedges& halfedges, std::uint32_t edge, bool reversed) {
   const Halfedge along = halfedges.of_edge(edge, reversed ? 1 : 0);
   const Halfedge back = halfedges.opposite(along);
   const Halfedge from_c = halfedges.previous(along);
@@ -61,14 +61,15 @@ bool all_different(std::span<const std::uint32_t> points) {
   return true;
 }
 
-std::optional<std::array<std::uint32_t, 4>> basis_in(const Surface& surface, const Frame& frame) {
+std::optional<std::array<std::uint32_t, 4>> basis_in(const Surface& surface,
+                                                     const RingStarts& starts) {
   const Halfedges& halfedges = surface.halfedges;
-  if (halfedges.is_boundary(frame.spokes[0]) || halfedges.is_boundary(frame.spokes[1])) {
+  if (halfedges.is_boundary(starts.spokes[0]) || halfedges.is_boundary(starts.spokes[1])) {
     return std::nullopt;
   }
   std::array<std::uint32_t, 4> basis{};
   for (std::size_t i = 0; i < 4; ++i) {
-    basis[i] = halfedges.from(frame.spokes[i]);
+    basis[i] = halfedges.from(starts.spokes[i]);
   }
   if (!all_different(basis)) return std::nullopt;
   return basis;
@@ -77,8 +78,8 @@ std::optional<std::array<std::uint32_t, 4>> basis_in(const Surface& surface, con
 // Collects the groups; says no where they cannot be told apart.
 class Grouping {
  public:
-  Grouping(const Surface& surface, const Frame& frame, EdgeNeighbourhood& result)
-      : surface_(surface), frame_(frame), result_(result) {}
+  Grouping(const Surface& surface, const RingStarts& starts, EdgeNeighbourhood& result)
+      : surface_(surface), starts_(starts), result_(result) {}
 
   [[nodiscard]] bool collect(GroupRule rule, const GroupVisit& visit) {
     if (rule != GroupRule::OuterApexes && !walk_rings()) return false;
@@ -97,7 +98,7 @@ class Grouping {
  private:
   bool walk_rings() {
     for (std::size_t k = 0; k < 4; ++k) {
-      if (!walk_ring(surface_.halfedges, frame_.spokes[k], rings_[k])) return false;
+      if (!walk_ring(surface_.halfedges, starts_.spokes[k], rings_[k])) return false;
     }
     return true;
   }
@@ -106,7 +107,7 @@ class Grouping {
     const bool with_apex = rule == GroupRule::OuterApexes || rule == GroupRule::NeighboursAndApexes;
     if (rule != GroupRule::OuterApexes && !collect_exclusive(rule, k)) return false;
     if (!with_apex) return true;
-    const std::optional<std::uint32_t> apex = apex_behind(surface_, frame_.outer[k]);
+    const std::optional<std::uint32_t> apex = apex_behind(surface_, starts_.outer[k]);
     return apex && append(k, *apex);
   }
 
@@ -143,7 +144,7 @@ class Grouping {
   }
 
   const Surface& surface_;
-  const Frame& frame_;
+  const RingStarts& starts_;
   EdgeNeighbourhood& result_;
   std::array<Ring, 4> rings_;
 };
@@ -152,18 +153,18 @@ class Grouping {
 
 std::optional<std::array<std::uint32_t, 4>> basis_of(const Surface& surface, std::uint32_t edge,
                                                      bool reversed) {
-  return basis_in(surface, frame_of(surface.halfedges, edge, reversed));
+  return basis_in(surface, ring_starts_of(surface.halfedges, edge, reversed));
 }
 
 std::optional<EdgeNeighbourhood> neighbourhood_of(const Surface& surface, std::uint32_t edge,
                                                   bool reversed, GroupRule rule,
                                                   const GroupVisit& visit) {
-  const Frame frame = frame_of(surface.halfedges, edge, reversed);
-  const auto basis = basis_in(surface, frame);
+  const RingStarts starts = ring_starts_of(surface.halfedges, edge, reversed);
+  const auto basis = basis_in(surface, starts);
   if (!basis) return std::nullopt;
   EdgeNeighbourhood result;
   result.basis = *basis;
-  if (!Grouping(surface, frame, result).collect(rule, visit)) return std::nullopt;
+  if (!Grouping(surface, starts, result).collect(rule, visit)) return std::nullopt;
   return result;
 }
 

@@ -22,7 +22,7 @@ namespace {
 // Cells of the volume over those of the area, as their noise is.
 constexpr double kVolumeStep = 1.3;
 // Of the radius, of a point: there the flank of the cap rises by 34 degrees.
-constexpr double kMaxMove = 0.22;
+constexpr double kMaxMoveInRadii = 0.22;
 // A cell's border lies three standard deviations of noise away: 3^2 / 2.
 constexpr double kSharpness = 4.5;
 constexpr std::size_t kUnitsPerTask = 4;  // balls are dear, and some far dearer than others
@@ -174,7 +174,7 @@ std::unique_ptr<BoundScheme> IieScheme::bind(const Surface& surface) const {
 std::optional<IieScheme::Plan> IieScheme::plan(SampledBall& sampled, const Word& word) const {
   const Ball& ball = sampled.ball();
   std::optional<Plan> best;
-  double best_move = kMaxMove * ball.radius;
+  double best_move = kMaxMoveInRadii * ball.radius;
   const double area = sampled.interpolated(0).area;
   const double near_area = area_.nearest_centre(area, area_bits(word));
   for (const double wanted_area : {near_area, area_.second_centre(area, near_area)}) {

@@ -21,7 +21,7 @@ constexpr double kMinHeight = 0.02;
 // rounding must not make another edge the longest.
 constexpr double kLongestGap = 0.01;
 // A point that had to move farther would be seen, and would flip a face as a rule.
-constexpr double kMaxMove = 0.5;
+constexpr double kMaxMoveInBases = 0.5;
 
 constexpr int kMaxNumberBits = 8;  // two numbers share the bits of a channel, 16 at most
 
@@ -133,10 +133,10 @@ class TsqScheme::ApexChoices {
     consider(next_height, std::tanh(next_ratio));
   }
 
-  // The apex for these bits, or nothing if it is farther than kMaxMove bases away.
+  // The apex for these bits, or nothing if it is farther than kMaxMoveInBases bases away.
   [[nodiscard]] std::optional<Apex> place(std::uint32_t bits) const {
     std::optional<Apex> best;
-    double best_move = kMaxMove;
+    double best_move = kMaxMoveInBases;
     for_each_cell(bits, [&](double x, double height) {
       const double move = length(x - triangle_.x, height - triangle_.height);
       if (move >= best_move) return false;
@@ -180,7 +180,7 @@ class TsqScheme::ApexMoves {
       const std::optional<double> x = apex_x(height, tanh_ratio, triangle_.x);
       if (x) {
         const double move = length(*x - triangle_.x, height - triangle_.height);
-        if (move < kMaxMove) return static_cast<float>(move * triangle_.base);
+        if (move < kMaxMoveInBases) return static_cast<float>(move * triangle_.base);
       }
     }
     const std::optional<Apex> apex = choices_.place(bits);
@@ -247,7 +247,7 @@ TsqScheme::TsqScheme(const WordCode& code, const TsqOptions& options)
 std::optional<FlatCorners> TsqScheme::reshape_to_marker(const FlatTriangle& triangle) const {
   const ApexChoices choices(triangle, marker_channel_);
   std::optional<FlatCorners> best;
-  double best_move = kMaxMove * triangle.base;
+  double best_move = kMaxMoveInBases * triangle.base;
   choices.for_each_cell(marker_, [&](double x, double height) {
     if (!keeps_longest_base(x, height)) return false;
     const FlatCorners moved = reshape(triangle, x, height);
