@@ -33,24 +33,30 @@ int exit_code_of(ErrorCode code) {
 
 }  // namespace
 
+std::unique_ptr<CLI::App> make_app(Action& action) {
+  auto app = std::make_unique<CLI::App>(
+      "Hides a blind, invisible watermark in meshes and reads it back.", "triglyph");
+  app->set_version_flag("--version", "triglyph " TRIGLYPH_VERSION);
+  app->formatter(make_help_formatter());  // the verbs take it over
+  add_config_file(*app);
+  app->require_subcommand(1);
+  add_mark_verb(*app, action);
+  add_extract_verb(*app, action);
+  add_verify_verb(*app, action);
+  add_measure_verb(*app, action);
+  add_render_verb(*app, action);
+  add_sample_verb(*app, action);
+  add_keygen_verb(*app, action);
+  return app;
+}
+
 int run_app(int argc, char** argv) try {
-  CLI::App app("Hides a blind, invisible watermark in meshes and reads it back.", "triglyph");
-  app.set_version_flag("--version", "triglyph " TRIGLYPH_VERSION);
-  app.formatter(make_help_formatter());  // the verbs take it over
-  add_config_file(app);
-  app.require_subcommand(1);
   Action action;
-  add_mark_verb(app, action);
-  add_extract_verb(app, action);
-  add_verify_verb(app, action);
-  add_measure_verb(app, action);
-  add_render_verb(app, action);
-  add_sample_verb(app, action);
-  add_keygen_verb(app, action);
+  const auto app = make_app(action);
   try {
-    app.parse(argc, argv);
+    app->parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kDone : kUsageError;
+    return app->exit(error) == 0 ? kDone : kUsageError;
   } catch (const std::invalid_argument& error) {
     return report(error, kUsageError);  // thrown by the parser for a bad value of a flag
   }

@@ -175,6 +175,9 @@ void add_extract_verb(CLI::App& app, Action& action) {
   arguments->keys.add_to(*verb);
   arguments->machine.add_threads_to(*verb);
   arguments->machine.add_memory_to(*verb);
+  verb->footer(
+      "Look for a mark in every mesh below a directory, under two keys:\n"
+      "  triglyph extract found/ --key-file owner.key --key-file former.key");
   verb->callback(
       [&action, arguments] { action = [arguments] { return run_extract(*arguments); }; });
 }

@@ -12,6 +12,9 @@ void add_keygen_verb(CLI::App& app, Action& action) {
   verb->add_option("--out", *out, "Key file to create, with mode 0600; must not exist")
       ->required()
       ->type_name("FILE");
+  verb->footer(
+      "Make the key of an owner; whoever has it can read and forge the owner's marks:\n"
+      "  triglyph keygen --out owner.key");
   verb->callback([&action, out] {
     action = [out] {
       const Key key = Key::generate();

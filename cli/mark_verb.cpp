@@ -168,6 +168,12 @@ void add_mark_verb(CLI::App& app, Action& action) {
   arguments->key.add_to(*verb);
   arguments->machine.add_threads_to(*verb);
   arguments->machine.add_memory_to(*verb);
+  verb->footer(
+      "Hide a message in some meshes, and keep what is needed to verify them:\n"
+      "  triglyph mark a.obj b.ply --out marked --message \"for Ada\" --key-file owner.key "
+      "--records run.jsonl\n"
+      "Mark what a manifest lists, with its own options for each mesh:\n"
+      "  triglyph mark collection.jsonl --out marked --key-file owner.key");
   verb->callback([&action, arguments] { action = [arguments] { return run_mark(*arguments); }; });
 }
 

@@ -91,6 +91,9 @@ void add_measure_verb(CLI::App& app, Action& action) {
       ->type_name("N");
   verb->add_flag("--json", arguments->json, "Print one JSON object");
   arguments->machine.add_threads_to(*verb);
+  verb->footer(
+      "Compare a marked mesh with its original by every metric:\n"
+      "  triglyph measure a.obj marked/a.obj --metric all");
   verb->callback(
       [&action, arguments] { action = [arguments] { return run_measure(*arguments); }; });
 }

@@ -102,6 +102,9 @@ void add_sample_verb(CLI::App& app, Action& action) {
       ->type_name("obj|off|ply|stl");
   verb->add_flag("--ascii", arguments->ascii, "Write PLY and STL as text instead of binary");
   arguments->machine.add_threads_to(*verb);
+  verb->footer(
+      "Make ten closed meshes of about 50,000 triangles:\n"
+      "  triglyph sample --out meshes --count 10 --triangles 50000 --shape closed");
   verb->callback([&action, arguments] { action = [arguments] { return run_sample(*arguments); }; });
 }
 

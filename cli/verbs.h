@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 
 #include <CLI/CLI.hpp>
 
@@ -10,6 +11,9 @@ namespace triglyph {
 
 // Runs the verb that the user chose, and returns an exit code.
 using Action = std::function<int()>;
+
+// Returns the parser with every verb; `action` must outlive it.
+[[nodiscard]] std::unique_ptr<CLI::App> make_app(Action& action);
 
 void add_keygen_verb(CLI::App& app, Action& action);
 void add_mark_verb(CLI::App& app, Action& action);

@@ -130,6 +130,9 @@ void add_verify_verb(CLI::App& app, Action& action) {
   arguments->key.add_to(*verb);
   arguments->machine.add_threads_to(*verb);
   arguments->machine.add_memory_to(*verb);
+  verb->footer(
+      "Check the files of a run, and name the vertices of damaged units:\n"
+      "  triglyph verify run.jsonl --key-file owner.key --detail");
   verb->callback([&action, arguments] { action = [arguments] { return run_verify(*arguments); }; });
 }
 

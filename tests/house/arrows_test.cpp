@@ -34,6 +34,7 @@ const std::map<std::string, Rooms> kMayInclude{
       "engine/scheme", "engine/layout", "engine/assignment", "engine/metric"}},
     {"manifests", {"engine"}},
     {"cli", {"manifests", "engine"}},
+    {"cli/manual", {"cli", "render"}},
     {"render", {"engine"}}};
 
 // Is `folder` the room, or one inside it?
@@ -41,11 +42,13 @@ bool lies_in(const std::string& folder, const std::string& room) {
   return folder == room || folder.rfind(room + "/", 0) == 0;
 }
 
+// The innermost room.
 std::string room_of(const std::string& folder) {
+  std::string found;
   for (const auto& [room, allowed] : kMayInclude) {
-    if (lies_in(folder, room)) return room;
+    if (lies_in(folder, room) && room.size() > found.size()) found = room;
   }
-  return folder;
+  return found.empty() ? folder : found;
 }
 
 bool is_source(const fs::directory_entry& entry) {
@@ -95,7 +98,9 @@ TEST(Arrows, LibrariesStayInTheirRooms) {
       {"<Eigen/", {"engine/geometry/symmetric_matrix.cpp"}},
       {"<embree3/", {"engine/geometry/embree_device.h"}},
       {"<OpenImageIO/", {"render/picture_file.cpp"}},
-      {"<CLI/", {"cli/config.h", "cli/options.h", "cli/verbs.h", "render/app.cpp"}},
+      {"<CLI/",
+       {"cli/config.h", "cli/options.h", "cli/verbs.h", "cli/manual/man_page.h",
+        "cli/manual/completion.h", "render/arguments.h"}},
       {"<OpenMesh/", {"engine/mesh/halfedges.h"}},
       {"<sodium", {"engine/message/key.cpp"}}};
   for (const char* room : {"engine", "manifests", "cli", "render"}) {

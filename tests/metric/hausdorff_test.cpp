@@ -13,7 +13,6 @@
 #include "engine/geometry/spatial_index.h"
 #include "engine/metric/deformation.h"
 #include "tests/support/arenas.h"
-#include "tests/support/cgal_hausdorff.h"
 #include "tests/support/remeshing.h"
 #include "tests/support/shapes.h"
 
@@ -127,24 +126,6 @@ TEST(Hausdorff, OfAMoveEqualsThatOfTwoMeshes) {
   EXPECT_NEAR(of_move.forward.distance, general.forward.distance, kTolerance);
   EXPECT_NEAR(of_move.backward.distance, general.backward.distance, kTolerance);
   EXPECT_LE(of_move.symmetric(), displacement(before.positions, after.positions).max);
-}
-
-TEST(Hausdorff, AgreesWithCgal) {
-  const Mesh& ball = test::bumpy_ball().mesh;
-  Mesh moved = ball;
-  for (std::size_t i = 0; i < moved.positions.size(); i += 3) {
-    moved.positions[i] += random_point(13, i, 0.02);
-  }
-  const Mesh coarse = test::decimated(ball, 0.7);
-  const Mesh other = make_sample_shape(SampleShape::HighGenus, 3000, 5);
-  for (const Mesh* second : {&std::as_const(moved), &coarse, &other}) {
-    const HausdorffDistance ours = hausdorff(ball, *second, kTolerance);
-    EXPECT_LE(ours.forward.error, kTolerance);
-    EXPECT_LE(ours.backward.error, kTolerance);
-    const double cgal = test::cgal_hausdorff(ball, *second, 1e-5);
-    EXPECT_NEAR(cgal, ours.symmetric(), 1e-5);
-    EXPECT_LE(cgal, ours.symmetric() + ours.error() + 1e-9);
-  }
 }
 
 // Only a lower bound could be had from points: a roof's ridge is far from the floor, a valley's
