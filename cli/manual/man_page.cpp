@@ -103,7 +103,8 @@ std::string synopsis(const CLI::App& app, const std::string& name) {
   std::string text = ".B " + escaped(name) + "\n[" + italic("OPTION") + "]...";
   for (const CLI::Option* option : options_of(app, true)) {
     const std::string value = option->get_type_name();
-    const std::string shown = italic(value.empty() ? option->get_name() : value);
+    std::string shown = italic(value.empty() ? option->get_name() : value);
+    if (option->get_items_expected_max() > 1) shown += "...";
     text += option->get_required() ? " " + shown : " [" + shown + "]";
   }
   if (!app.get_subcommands([](const CLI::App*) { return true; }).empty()) {

@@ -105,8 +105,9 @@ struct ReadReport {
 
 // What became of a marked file.
 struct VerifyReport {
-  std::string verdict;  // "intact", "altered", "lost", "damaged", "missing" or "not marked"
-  std::string detail;   // why, in one line; empty if intact
+  // "intact", "altered, mark present", "mark lost", "damaged", "missing" or "not marked".
+  std::string verdict;
+  std::string detail;  // why, in one line; empty if intact
   std::uint32_t units_found = 0;
   // Vertices of the file, from 0, that damaged units depend on, ascending. Known if the record
   // holds its units (setting "detail") and the file still numbers its vertices as it was written.
@@ -115,7 +116,8 @@ struct VerifyReport {
 
 // Compares the file that a record names with what the record says was written there. `record` is
 // MarkReport::record or a line of `triglyph mark --json`. Under another key than the mark's the
-// verdict is "lost", and the detail says so. Throws Error Malformed if it is no record. O(n log n).
+// verdict is "mark lost", and the detail says so. Throws Error Malformed if it is no record.
+// O(n log n).
 [[nodiscard]] TRIGLYPH_API VerifyReport verify_file(std::string_view record, const SecretKey& key);
 
 }  // namespace triglyph

@@ -50,10 +50,10 @@ TEST_F(Library, ReadsAndVerifiesWhatItMarked) {
 
   EXPECT_EQ(verify_file(marked.record, key).verdict, "intact");
   const VerifyReport other_key = verify_file(marked.record, SecretKey::trial());
-  EXPECT_EQ(other_key.verdict, "lost");
+  EXPECT_EQ(other_key.verdict, "mark lost");
   EXPECT_NE(other_key.detail.find("another key"), std::string::npos);
   std::ofstream(out_, std::ios::app) << "# a line more\n";
-  EXPECT_EQ(verify_file(marked.record, key).verdict, "altered");
+  EXPECT_EQ(verify_file(marked.record, key).verdict, "altered, mark present");
   fs::remove(out_);
   EXPECT_EQ(verify_file(marked.record, key).verdict, "missing");
 }
