@@ -172,7 +172,8 @@ TEST(Formats, MessageSurvivesConversionFromAnyToAny) {
     fs::path path = records[i].file.out;
     for (std::size_t k = 0; k < 6; ++k) {
       const Mesh mesh = MeshFile::open(path).mesh();
-      path = collection.folder() / ("c" + std::to_string(k) + "." + endings[k]);
+      path = collection.folder() / std::to_string(k);
+      path.replace_extension(endings[k]);
       save(test::with_significant_digits(mesh, 6), path, chain[k]);
       EXPECT_EQ(message_in(path), records[i].file.request.message()) << i << " -> " << path;
     }
