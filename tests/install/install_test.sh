@@ -21,7 +21,7 @@ lib=$(dirname "$(find "$prefix" -name libtriglyph.so)")
 strangers=$(nm -DC --defined-only "$lib/libtriglyph.so" | cut -d' ' -f3- |
   grep -vE '^(triglyph::|(typeinfo|typeinfo name|vtable) for triglyph::)' || true)
 [[ -z $strangers ]] || fail "the library also exports: $strangers"
-nm -DC --defined-only "$lib/libtriglyph.so" | grep -q 'triglyph::mark_file' || fail "no mark_file"
+grep -q 'triglyph::mark_file' <<<"$(nm -DC --defined-only "$lib/libtriglyph.so")" || fail "no mark_file"
 
 # The headers name no other library and compile by themselves.
 others=$(grep -rhE '^#include' "$prefix/include" | grep -vE '<(triglyph/[a-z]+\.h|[a-z_]+)>' || true)
@@ -43,7 +43,7 @@ prefix=$work/moved
 lib=${lib/"$work/prefix"/$prefix}
 read -ra flags < <(PKG_CONFIG_PATH=$lib/pkgconfig pkg-config --cflags --libs triglyph)
 c++ "$source/examples/mark_and_read.cpp" "${flags[@]}" -Wl,-rpath,"$lib" -o "$work/by_pkg_config"
-"$work/by_pkg_config" "$mesh" "$work/marked_again.obj" | grep -q '^for Ada' || fail "pkg-config"
+grep -q '^for Ada' <<<"$("$work/by_pkg_config" "$mesh" "$work/marked_again.obj")" || fail "pkg-config"
 
 # Every option in a verb's help is on its page, and the pages are well-formed.
 for verb in mark extract verify measure render sample keygen; do
@@ -74,7 +74,7 @@ completed() {
 expect() {
   local wanted=$1
   shift
-  completed "$@" | grep -qxF -- "$wanted" || fail "completion of '$*' lacks $wanted"
+  grep -qxF -- "$wanted" <<<"$(completed "$@")" || fail "completion of '$*' lacks $wanted"
 }
 expect extract ex
 expect --max-move mark --max
@@ -84,5 +84,5 @@ expect meshes mark --out me
 expect marked.obj extract mar
 expect --panels render --pan
 [[ -z $(completed mark --max-move "") ]] || fail "a number was completed"
-completed mark --key | grep -qx -- --key-file || fail "completion of --key"
+expect --key-file mark --key
 echo "installed files are complete"
