@@ -59,10 +59,9 @@ std::string as_sentence(std::string text) {
   return text;
 }
 
+// What stands behind the option; empty for a flag.
 std::string value_name_of(const CLI::Option& option) {
-  return option.get_positional()                ? option.get_type_name()
-         : option.get_items_expected_max() == 0 ? ""
-                                                : option.get_type_name();
+  return option.get_items_expected_max() == 0 ? "" : option.get_type_name();
 }
 
 void append_option(std::string& page, const CLI::Option& option) {

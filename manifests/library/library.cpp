@@ -23,7 +23,6 @@ OptionValues values_of(const Settings& settings) {
     if (spec == nullptr) throw Error(ErrorCode::Usage, {}, "", "unknown option \"" + key + "\"");
     values.emplace(key, spec->parsed(text));
   }
-  check_contradictions(values, values.contains("scheme") ? scheme_of(values) : "");
   return values;
 }
 
@@ -87,9 +86,11 @@ MarkReport mark_file(const std::filesystem::path& mesh, const std::filesystem::p
 ReadReport read_file(const std::filesystem::path& path, std::span<const SecretKey> keys,
                      const Settings& settings) {
   if (keys.empty()) throw Error(ErrorCode::Usage, {}, "", "no key to read with");
+  const OptionValues values = values_of(settings);
+  check_contradictions(values, values.contains("scheme") ? scheme_of(values) : "");
   std::vector<Key> secrets;
   for (const SecretKey& key : keys) secrets.push_back(key.secret().key);
-  const FileReading reading = read_file(path, encodings_of(values_of(settings)), secrets);
+  const FileReading reading = read_file(path, encodings_of(values), secrets);
   ReadReport report;
   report.false_alarm = reading.false_alarm;
   if (const auto& mark = reading.mark) {
