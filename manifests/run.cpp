@@ -93,7 +93,8 @@ void run_jobs(JobSource& jobs, const Key& key, const FlowOptions& options,
                  unless_stopped([&key](FileMarking& marking) { marking.mark(key); }),
                  unless_stopped([](FileMarking& marking) { marking.write(); }),
                  always([&key](FileMarking& marking) { marking.read_back(key); }),
-                 always([](FileMarking& marking) { marking.measure(); })};
+                 always([](FileMarking& marking) { marking.measure(); }),
+                 always([](FileMarking& marking) { marking.publish(); })};
   flow.deliver = [&on_record](FlowItem& item) {
     const MarkItem& done = static_cast<MarkItem&>(item);
     on_record({done.marking.result(), done.index, done.memory_estimate, peak_bytes()});

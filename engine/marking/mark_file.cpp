@@ -21,10 +21,13 @@ namespace triglyph {
 namespace {
 
 // by FileStatus
-constexpr std::array<std::string_view, 11> kStatusNames = {
-    "marked",     "too small", "positions too coarse", "not verified",
-    "unreadable", "malformed", "unsupported",          "unwritable",
-    "usage",      "failed",    "interrupted"};
+constexpr std::array<std::string_view, 16> kStatusNames = {
+    "marked",      "too small",      "positions too coarse",
+    "too visible", "already marked", "not verified",
+    "unreadable",  "malformed",      "unsupported",
+    "unwritable",  "usage",          "exists",
+    "failed",      "crashed",        "too slow",
+    "interrupted"};
 
 FileStatus status_of(ErrorCode code) {
   switch (code) {
@@ -191,9 +194,7 @@ void FileMarking::read_back(const Key& key) noexcept {
       return;
     }
     if (result_.request.options.detail) result_.units = std::move(embedded);
-    work_->output->commit();
   });
-  if (work_) work_->output.reset();
 }
 
 void FileMarking::measure() noexcept {
@@ -209,11 +210,21 @@ void FileMarking::measure() noexcept {
             .symmetric();
     result_.hausdorff_rel_diag = result_.hausdorff / diagonal;
   });
+}
+
+void FileMarking::publish() noexcept {
+  double seconds = 0;
+  run_stage(seconds, [&] { work_->output->commit(); });
+  result_.times.write += seconds;
   work_.reset();
 }
 
 void FileMarking::interrupt() noexcept {
-  if (result_.is_marked()) end(FileStatus::Interrupted, "interrupted");
+  refuse(FileStatus::Interrupted, "interrupted");
+}
+
+void FileMarking::refuse(FileStatus status, const std::string& reason) noexcept {
+  if (result_.is_marked()) end(status, reason);
 }
 
 MarkedFile mark_file(const std::filesystem::path& mesh, const std::filesystem::path& out,
@@ -224,6 +235,7 @@ MarkedFile mark_file(const std::filesystem::path& mesh, const std::filesystem::p
   marking.write();
   marking.read_back(key);
   marking.measure();
+  marking.publish();
   return marking.result();
 }
 

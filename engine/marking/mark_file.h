@@ -17,16 +17,22 @@
 namespace triglyph {
 
 enum class FileStatus {
-  Marked,       // the output exists, and its mark was read back from it
-  TooSmall,     // fewer units than the message has parts; no output
-  TooCoarse,    // the file's numbers cannot hold the mark; no output
-  NotVerified,  // the mark could not be read back; no output
-  Unreadable,   // this and the next four: see ErrorCode
+  Marked,  // the output exists, and its mark was read back from it
+  // All others: there is no output.
+  TooSmall,       // fewer units than the message has parts
+  TooCoarse,      // the file's numbers cannot hold the mark
+  TooVisible,     // a point would move farther than the user allows
+  AlreadyMarked,  // the mesh carries a mark of this key already
+  NotVerified,    // the mark could not be read back
+  Unreadable,     // this and the next four: see ErrorCode
   Malformed,
   Unsupported,
   Unwritable,
   Usage,
-  Failed,  // an error of the program itself, or not enough memory
+  Exists,   // another file has the output's name, and the user wants to keep it
+  Failed,   // an error of the program itself, or not enough memory
+  Crashed,  // the process that worked on the mesh died
+  TooSlow,  // the mesh took longer than the user allows
   Interrupted,
 };
 
@@ -88,12 +94,14 @@ class FileMarking {
   void load() noexcept;
   void mark(const Key& key) noexcept;
   void write() noexcept;
-  void read_back(const Key& key) noexcept;  // publishes the output if the mark can be read from it
-  void measure() noexcept;                  // also releases everything but the result
+  void read_back(const Key& key) noexcept;  // from the file that was written
+  void measure() noexcept;
+  void publish() noexcept;  // gives the output its name, and releases everything but the result
 
-  // Gives the mesh the status Interrupted, unless it failed already. To be called only before the
-  // output is published.
+  // Give the mesh another status than Marked, unless it failed already. To be called only before
+  // the output is published.
   void interrupt() noexcept;
+  void refuse(FileStatus status, const std::string& reason) noexcept;
 
   [[nodiscard]] const MarkedFile& result() const { return result_; }
 
