@@ -1,11 +1,16 @@
 #include "cli/app.h"
 
+#include <algorithm>
 #include <exception>
 #include <iostream>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "cli/config.h"
 #include "cli/options.h"
+#include "cli/run_arguments.h"
+#include "cli/screen.h"
 #include "cli/verbs.h"
 #include "engine/base/error.h"
 
@@ -13,7 +18,7 @@ namespace triglyph {
 namespace {
 
 int report(const std::exception& error, int code) {
-  std::cerr << "triglyph: " << error.what() << "\n";
+  std::cerr << "triglyph: " << printable(error.what()) << "\n";
   return code;
 }
 
@@ -29,6 +34,56 @@ int exit_code_of(ErrorCode code) {
       return kFatal;
   }
   return kFatal;
+}
+
+// Returns the least number of letters to insert, delete, replace or swap with a neighbour that turn
+// one word into the other (Damerau-Levenshtein, each place edited once). O(|a| |b|).
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::vector<std::size_t>> rows(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i) {
+    for (std::size_t j = 0; j <= b.size(); ++j) {
+      if (i == 0 || j == 0) {
+        rows[i][j] = i + j;
+        continue;
+      }
+      const std::size_t replaced = rows[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      rows[i][j] = std::min({rows[i - 1][j] + 1, rows[i][j - 1] + 1, replaced});
+      const bool swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
+      if (swapped) rows[i][j] = std::min(rows[i][j], rows[i - 2][j - 2] + 1);
+    }
+  }
+  return rows[a.size()][b.size()];
+}
+
+// Names the verb or option that a mistyped word is closest to, if it is close to one.
+void suggest(const CLI::App& app, int argc, char** argv) {
+  const auto verbs = app.get_subcommands([](const CLI::App*) { return true; });
+  std::vector<std::string> known;
+  const CLI::App* chosen = nullptr;
+  for (const CLI::App* verb : verbs) {
+    known.push_back(verb->get_name());
+    if (argc > 1 && verb->get_name() == argv[1]) chosen = verb;
+  }
+  if (chosen != nullptr) {
+    known.clear();
+    for (const CLI::Option* option : chosen->get_options()) {
+      for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+    }
+  }
+  for (int i = chosen == nullptr ? 1 : 2; i < argc; ++i) {
+    const std::string word = std::string(argv[i]).substr(0, std::string(argv[i]).find('='));
+    const bool is_option = word.rfind("--", 0) == 0;
+    if (is_option == (chosen == nullptr)) continue;
+    if (std::find(known.begin(), known.end(), word) != known.end()) continue;
+    const auto closest = std::min_element(known.begin(), known.end(), [&](auto& a, auto& b) {
+      return edit_distance(a, word) < edit_distance(b, word);
+    });
+    // a third of the letters may be wrong
+    if (closest != known.end() && 3 * edit_distance(*closest, word) <= word.size()) {
+      std::cerr << "triglyph: did you mean " << *closest << "?\n";
+    }
+    return;
+  }
 }
 
 }  // namespace
@@ -51,16 +106,24 @@ std::unique_ptr<CLI::App> make_app(Action& action) {
 }
 
 int run_app(int argc, char** argv) try {
+  set_command_line(argc, argv);
   Action action;
   const auto app = make_app(action);
   try {
     app->parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app->exit(error) == 0 ? kDone : kUsageError;
+    if (app->exit(error) != 0) {
+      suggest(*app, argc, argv);
+      return kUsageError;
+    }
+    check_standard_output();
+    return kDone;
   } catch (const std::invalid_argument& error) {
     return report(error, kUsageError);  // thrown by the parser for a bad value of a flag
   }
-  return action();
+  const int code = action();
+  check_standard_output();
+  return code;
 } catch (const Error& error) {
   return report(error, exit_code_of(error.code()));
 } catch (const std::exception& error) {

@@ -1,17 +1,16 @@
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <iostream>
 #include <memory>
 
 #include "cli/app.h"
 #include "cli/options.h"
+#include "cli/run_arguments.h"
 #include "cli/screen.h"
 #include "cli/verbs.h"
-#include "engine/base/error.h"
-#include "engine/base/parallel.h"
 #include "manifests/inputs.h"
 #include "manifests/json_line.h"
+#include "manifests/records_file.h"
 #include "manifests/run.h"
 
 namespace triglyph {
@@ -23,15 +22,13 @@ struct ExtractArguments {
   bool json = false;
   OptionValues values;
   KeysArgument keys;
-  MachineArguments machine;
+  RunArguments run;
 };
 
-// Returns printable text unchanged, anything else in hexadecimal.
+// Returns printable text (UTF-8) unchanged, anything else in hexadecimal.
 std::string shown(const Message& message) {
-  const bool printable = std::all_of(message.begin(), message.end(),
-                                     [](std::uint8_t byte) { return byte >= 32 && byte < 127; });
-  return printable ? "\"" + std::string(message.begin(), message.end()) + "\""
-                   : "0x" + to_hex(message);
+  const std::string text(message.begin(), message.end());
+  return is_printable(text) ? "\"" + text + "\"" : "0x" + to_hex(message);
 }
 
 // Returns the exponent of the least power of two that is not below the probability.
@@ -41,7 +38,7 @@ int power_of_two_above(double chance) {
 
 void print_text(const std::filesystem::path& path, const FileReading& reading,
                 std::span<const Key> keys) {
-  std::cout << path.string() << ": ";
+  std::cout << printable(path.string()) << ": ";
   if (!reading.mark) {
     std::cout << "no mark\n";
     return;
@@ -56,12 +53,13 @@ void print_text(const std::filesystem::path& path, const FileReading& reading,
 
 void print_json(const std::filesystem::path& path, const FileReading& reading,
                 std::span<const Key> keys) {
-  nlohmann::ordered_json json = {{"mesh", path.string()},
-                                 {"status", reading.mark ? "marked" : "no mark"},
-                                 {"vertices", reading.vertices},
-                                 {"faces", reading.faces},
-                                 {"units_with_marker", reading.units_with_marker},
-                                 {"false_alarm_bound", reading.false_alarm}};
+  nlohmann::ordered_json json;
+  put_path(json, "mesh", path);
+  json["status"] = reading.mark ? "marked" : "no mark";
+  json["vertices"] = reading.vertices;
+  json["faces"] = reading.faces;
+  json["units_with_marker"] = reading.units_with_marker;
+  json["false_alarm_bound"] = reading.false_alarm;
   if (reading.mark) {
     const FoundMark& mark = *reading.mark;
     json["message_hex"] = to_hex(mark.message);
@@ -74,57 +72,52 @@ void print_json(const std::filesystem::path& path, const FileReading& reading,
   std::cout << to_line(json);
 }
 
-// Prints results as they arrive, and keeps track of the exit code.
-class ResultPrinter {
- public:
-  ResultPrinter(std::span<const Key> keys, bool json) : keys_(keys), json_(json) {}
+// The kinds of results in the tally.
+enum Kind : std::size_t { kCarries, kCarriesNone, kFailedFirst };
 
-  void print(const ReadResult& result) {
-    if (result.reading) {
-      all_marked_ = all_marked_ && result.reading->mark.has_value();
-      json_ ? print_json(result.path, *result.reading, keys_)
-            : print_text(result.path, *result.reading, keys_);
-      return;
-    }
-    all_readable_ = false;
-    std::cerr << "triglyph: " << result.error << "\n";
-    if (!json_) return;
-    std::cout << to_line({{"mesh", result.path.string()},
-                          {"status", name_of(*result.status)},
-                          {"error", result.error}});
+std::vector<std::string_view> kinds_of_results() {
+  std::vector<std::string_view> kinds = {"with a mark", "without"};
+  for (int status = 0; status <= static_cast<int>(FileStatus::Interrupted); ++status) {
+    kinds.push_back(name_of(static_cast<FileStatus>(status)));
   }
+  return kinds;
+}
 
-  [[nodiscard]] int exit_code() const {
-    if (!all_readable_) return kSomeFailed;
-    return all_marked_ ? kDone : kNoMark;
+void print_result(const ReadResult& result, std::span<const Key> keys, bool json) {
+  if (result.reading) {
+    json ? print_json(result.path, *result.reading, keys)
+         : print_text(result.path, *result.reading, keys);
+    return;
   }
+  std::cerr << "triglyph: " << printable(result.error) << "\n";
+  if (!json) return;
+  nlohmann::ordered_json line;
+  put_path(line, "mesh", result.path);
+  line["status"] = name_of(*result.status);
+  line["error"] = result.error;
+  std::cout << to_line(line);
+}
 
- private:
-  std::span<const Key> keys_;
-  bool json_;
-  bool all_marked_ = true;
-  bool all_readable_ = true;
-};
+// Prints a result as it arrives, and counts it.
+void report_result(const ReadResult& result, std::span<const Key> keys, bool json,
+                   RunTally& tally) {
+  print_result(result, keys, json);
+  check_standard_output();  // nobody is there to read the rest
+  const std::size_t kind = !result.reading ? kFailedFirst + static_cast<std::size_t>(*result.status)
+                           : result.reading->mark ? kCarries
+                                                  : kCarriesNone;
+  tally.count(kind, !result.reading, false, result.path);
+}
 
 // Returns the distinct encodings of the marks in a file of records.
 std::vector<Encoding> encodings_in(const std::filesystem::path& records) {
-  std::ifstream stream(records);
-  if (std::filesystem::is_directory(records) || !stream) {
-    throw Error(ErrorCode::Unreadable, records, "", "the records cannot be read");
-  }
   std::vector<Encoding> encodings;
-  std::size_t number = 0;
-  for (std::string line; std::getline(stream, line);) {
-    ++number;
-    try {
-      const Record record = parse_record(line);
-      if (!record.file.is_marked() || record.file.request.is_fill()) continue;
-      Encoding encoding = record.file.encoding();
-      if (std::find(encodings.begin(), encodings.end(), encoding) == encodings.end()) {
-        encodings.push_back(std::move(encoding));
-      }
-    } catch (const Error& error) {
-      throw Error(ErrorCode::Malformed, records, at_line(number), error.message());
+  const auto next = open_records(records);
+  while (const std::optional<Record> record = next()) {
+    if (!record->file.is_marked() || record->file.request.is_fill()) continue;
+    Encoding encoding = record->file.encoding();
+    if (std::find(encodings.begin(), encodings.end(), encoding) == encodings.end()) {
+      encodings.push_back(std::move(encoding));
     }
   }
   return encodings;
@@ -146,16 +139,21 @@ int run_extract(const ExtractArguments& arguments) {
     encodings = std::move(recorded);
   }
   const std::vector<std::filesystem::path> files = gather_files(arguments.inputs, std::cin);
-  ResultPrinter printer(keys, arguments.json);
-  const std::atomic<bool>& stop = interrupt_flag();
-  FlowOptions options;
-  options.memory_bytes = arguments.machine.memory_bytes();
-  with_threads(arguments.machine.threads(), [&] {
+  return arguments.run.supervised([&](const WorkOrder& order) {
+    std::optional<Ledger> ledger;
+    if (!arguments.run.ledger().empty()) ledger.emplace(arguments.run.ledger());
+    const LoggedRun run(ledger ? &*ledger : nullptr, order, "extract");
+    RunTally tally(arguments.run, order, files.size(), kinds_of_results());
     read_files(
-        files, encodings, keys, options, [&](const ReadResult& result) { printer.print(result); },
-        stop);
+        files, encodings, keys, arguments.run.context(order),
+        [&](const ReadResult& result) { report_result(result, keys, arguments.json, tally); },
+        order.board->stop());
+    if (order.only) return kDone;
+    int code = tally.finish("files");
+    if (code == kDone && tally.counted(kCarriesNone) > 0) code = kNoMark;
+    run.end(code);
+    return code;
   });
-  return stop ? kInterrupted : printer.exit_code();
 }
 
 }  // namespace
@@ -173,8 +171,7 @@ void add_extract_verb(CLI::App& app, Action& action) {
   verb->add_flag("--json", arguments->json, "Print one JSON object per mesh");
   add_declared_options(*verb, encoding_option_specs(), arguments->values);
   arguments->keys.add_to(*verb);
-  arguments->machine.add_threads_to(*verb);
-  arguments->machine.add_memory_to(*verb);
+  arguments->run.add_to(*verb);
   verb->footer(
       "Look for a mark in every mesh below a directory, under two keys:\n"
       "  triglyph extract found/ --key-file owner.key --key-file former.key");

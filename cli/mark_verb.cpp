@@ -1,152 +1,261 @@
-#include <cerrno>
-#include <fstream>
 #include <iostream>
 #include <memory>
 
 #include "cli/app.h"
 #include "cli/options.h"
+#include "cli/run_arguments.h"
 #include "cli/screen.h"
 #include "cli/sibling.h"
 #include "cli/verbs.h"
 #include "engine/base/error.h"
-#include "engine/base/parallel.h"
 #include "manifests/json_line.h"
+#include "manifests/records_file.h"
 #include "manifests/run.h"
 
 namespace triglyph {
 namespace {
 
-constexpr const char* kDefaultMessage = "triglyph";  // 8 bytes, if the user names none
+namespace fs = std::filesystem;
 
 struct MarkArguments {
-  std::vector<std::filesystem::path> inputs;
-  std::filesystem::path out;
+  std::vector<std::string> inputs;
+  fs::path out;
   OptionValues values;
-  std::filesystem::path records;
-  std::filesystem::path pictures;  // directory
+  fs::path records;
+  fs::path pictures;  // directory
   bool json = false;
+  bool dry_run = false;
+  ResumeOptions resume;
   KeyArgument key;
-  MachineArguments machine;
-
-  // Returns the values, with the default message if the user gives none.
-  [[nodiscard]] OptionValues values_with_message() const {
-    return layered({{"message", std::string(kDefaultMessage)}}, values);
-  }
+  RunArguments run;
 };
 
-bool is_manifest(const std::filesystem::path& path) {
+bool is_manifest(const fs::path& path) {
   return path.extension() == ".jsonl" || path.extension() == ".json";
 }
 
-std::unique_ptr<JobSource> open_jobs(const MarkArguments& arguments) {
-  const OptionValues values = arguments.values_with_message();
-  if (arguments.inputs.size() == 1 && is_manifest(arguments.inputs[0])) {
-    check_contradictions(arguments.values, "");  // its lines may choose the scheme
-    (void)resolve(values);
-    return std::make_unique<ManifestReader>(arguments.inputs[0], values, arguments.out);
-  }
-  check_contradictions(arguments.values, scheme_of(values));
-  if (arguments.out.empty()) {
-    throw Error(ErrorCode::Usage, {}, "", "--out is needed to mark meshes without a manifest");
-  }
-  return std::make_unique<MeshList>(arguments.inputs, values, arguments.out);
+bool has_manifest(const MarkArguments& arguments) {
+  return arguments.inputs.size() == 1 && is_manifest(arguments.inputs[0]);
 }
 
-std::ofstream open_records(const MarkArguments& arguments) {
-  for (const std::filesystem::path& input : arguments.inputs) {
-    std::error_code error;
-    if (std::filesystem::equivalent(input, arguments.records, error)) {
-      throw Error(ErrorCode::Usage, arguments.records, "", "the records would overwrite an input");
-    }
-  }
-  std::ofstream file(arguments.records, std::ios::binary | std::ios::trunc);
-  if (!file) throw Error(ErrorCode::Unwritable, arguments.records, "", system_reason(errno));
-  return file;
-}
-
-// Prints records as they arrive: as a table or JSON on standard output, as JSON in the records
-// file.
-class RecordPrinter {
+// Opens the same jobs any number of times; the list on standard input is read once.
+class Jobs {
  public:
-  RecordPrinter(const MarkArguments& arguments, std::size_t total)
-      : json_(arguments.json), bar_(total), records_(arguments.records) {
-    if (!arguments.records.empty()) file_ = open_records(arguments);
-    if (!json_) print_table_heading(std::cout);
-  }
-
-  void print(const Record& record) {
-    const bool failed = !record.file.is_marked();
-    failed_ += failed ? 1 : 0;
-    bar_.clear();
-    if (json_ || file_.is_open()) {
-      const std::string line = to_line(to_json(record));
-      if (json_) std::cout << line << std::flush;
-      if (file_.is_open() && !(file_ << line << std::flush)) {
-        throw Error(ErrorCode::Unwritable, records_, "", "the record cannot be written");
-      }
+  explicit Jobs(const MarkArguments& arguments) : arguments_(arguments) {
+    if (has_manifest(arguments)) {
+      check_contradictions(arguments.values, "");  // its lines may choose the scheme
+      return;
     }
-    if (!json_) print_table_row(std::cout, record);
-    if (!record.file.error.empty()) std::cerr << "triglyph: " << record.file.error << "\n";
-    bar_.advance(failed);
+    for (const std::string& input : arguments.inputs) {
+      if (!is_manifest(input)) continue;
+      throw Error(ErrorCode::Usage, input, "",
+                  "a manifest is marked alone, without further meshes or manifests");
+    }
+    check_contradictions(arguments.values, scheme_of(arguments.values));
+    if (arguments.out.empty()) {
+      throw Error(ErrorCode::Usage, {}, "", "--out is needed to mark meshes without a manifest");
+    }
+    meshes_ = gather_named_files(arguments.inputs, std::cin);
   }
 
-  // Returns the number of meshes that are not marked.
-  std::size_t finish() {
-    bar_.clear();
-    return failed_;
+  [[nodiscard]] std::unique_ptr<JobSource> open() const {
+    if (has_manifest(arguments_)) {
+      return std::make_unique<ManifestReader>(arguments_.inputs[0], arguments_.values,
+                                              arguments_.out);
+    }
+    return std::make_unique<MeshList>(meshes_, arguments_.values, arguments_.out);
   }
 
  private:
-  bool json_;
-  std::size_t failed_ = 0;
-  ProgressBar bar_;
-  std::filesystem::path records_;
-  std::ofstream file_;  // flushed line by line, so that an aborted run keeps its records
+  const MarkArguments& arguments_;
+  std::vector<NamedFile> meshes_;
 };
 
+// Returns the ledger's place: beside the folder of the marked files, not in it, since that folder
+// is handed out; or beside the manifest that names the outputs.
+fs::path ledger_of(const MarkArguments& arguments) {
+  if (!arguments.run.ledger().empty()) return arguments.run.ledger();
+  fs::path beside = arguments.out.empty() ? fs::path(arguments.inputs.front()) : arguments.out;
+  beside = fs::absolute(beside).lexically_normal();
+  if (!beside.has_filename()) beside = beside.parent_path();
+  if (!beside.has_filename()) {
+    throw Error(ErrorCode::Usage, beside, "", "has no place beside it for a ledger; name --ledger");
+  }
+  return beside += ".ledger";
+}
+
+std::vector<OwnFile> own_files(const MarkArguments& arguments) {
+  std::vector<OwnFile> files;
+  if (!arguments.key.file().empty()) files.push_back({arguments.key.file(), "the key", false});
+  if (has_manifest(arguments)) files.push_back({arguments.inputs[0], "the manifest", false});
+  const fs::path ledger = ledger_of(arguments);
+  files.push_back({ledger, "the ledger", true});
+  for (const char* ending : {"-wal", "-shm", "-journal"}) {
+    files.push_back({ledger.string() + ending, "a file of the ledger", true});
+  }
+  if (!arguments.records.empty()) files.push_back({arguments.records, "the records", true});
+  return files;
+}
+
 // Returns the path of the picture: relative to its directory as the marked file is to its own.
-std::filesystem::path picture_of(const Record& record, const MarkArguments& arguments) {
-  std::filesystem::path name = record.file.out.lexically_relative(arguments.out);
+fs::path picture_of(const Record& record, const MarkArguments& arguments) {
+  fs::path name = record.file.out.lexically_relative(arguments.out);
   if (name.empty() || *name.begin() == "..") name = record.file.out.filename();
   return arguments.pictures / (name.string() + ".png");
 }
 
 std::vector<std::string> renderer_arguments(const MarkArguments& arguments) {
   std::vector<std::string> words = {"--batch"};
-  const int threads = arguments.machine.threads();
+  const int threads = arguments.run.threads();
   if (threads > 0) words.insert(words.end(), {"--threads", std::to_string(threads)});
   return words;
 }
 
+std::vector<std::string_view> status_names() {
+  std::vector<std::string_view> names;
+  for (int status = 0; status <= static_cast<int>(FileStatus::Interrupted); ++status) {
+    names.push_back(name_of(static_cast<FileStatus>(status)));
+  }
+  return names;
+}
+
+// What one worker of a run of marking prints, writes and draws.
+class MarkReport {
+ public:
+  MarkReport(const MarkArguments& arguments, const WorkOrder& order, std::size_t total)
+      : arguments_(arguments),
+        tally_(arguments.run, order, total, status_names()),
+        bar_(total, order.board->delivered, arguments.run.is_quiet()) {
+    if (!arguments.records.empty()) records_.emplace(arguments.records, !order.is_first);
+    if (!arguments.pictures.empty()) pictures_.emplace(renderer_arguments(arguments));
+    has_table_ = !arguments.json && !arguments.run.is_quiet();
+    if (has_table_ && order.is_first) print_table_heading(std::cout);
+  }
+
+  void completed(const Record& record) {
+    if (records_ && !record.is_repeated) records_->write(record);
+  }
+
+  void delivered(const Record& record) {
+    const bool failed = !record.file.is_marked();
+    bar_.clear();
+    if (arguments_.json) std::cout << to_line(to_json(record)) << std::flush;
+    if (has_table_) print_table_row(std::cout, record);
+    if (!record.file.error.empty()) {
+      std::cerr << "triglyph: " << printable(record.file.error) << "\n";
+    }
+    tally_.count(static_cast<std::size_t>(record.file.status), failed, record.is_kept,
+                 record.file.mesh);
+    bar_.advance(failed);
+    if (pictures_ && !failed && wants_picture(record)) {
+      pictures_->draw(record.file.mesh, record.file.out, picture_of(record, arguments_));
+    }
+  }
+
+  // Waits for pictures, and returns the exit code.
+  int finish(bool stopped) {
+    bar_.clear();
+    if (records_) records_->finish();
+    if (pictures_ && stopped) pictures_->stop();
+    bool all_drawn = true;
+    if (pictures_ && !pictures_->finish()) {
+      std::cerr << "triglyph: not all pictures were drawn\n";
+      all_drawn = false;
+    }
+    const int code = tally_.finish("meshes");
+    return code == kDone && !all_drawn ? kSomeFailed : code;
+  }
+
+ private:
+  // The picture of a mesh that an earlier run marked is there already.
+  [[nodiscard]] bool wants_picture(const Record& record) const {
+    std::error_code ignored;
+    return !record.is_kept || !fs::exists(picture_of(record, arguments_), ignored);
+  }
+
+  const MarkArguments& arguments_;
+  RunTally tally_;
+  ProgressBar bar_;
+  std::optional<RecordsFile> records_;
+  std::optional<RenderBatch> pictures_;
+  bool has_table_ = false;
+};
+
+int print_plan(const MarkArguments& arguments, const Jobs& jobs, const Key& key) {
+  (void)check_plan(*jobs.open(), own_files(arguments));
+  const fs::path path = ledger_of(arguments);
+  std::optional<Ledger> ledger;
+  std::optional<Resume> resume;
+  std::error_code ignored;
+  if (fs::exists(path, ignored)) resume.emplace(ledger.emplace(path), 0, key, arguments.resume);
+  std::size_t marked = 0;
+  std::size_t kept = 0;
+  std::size_t refused = 0;
+  const auto print = [&](const Job& job, const Decision& decision) {
+    const bool keeps = decision.kind == Decision::Kind::Keep;
+    const bool refuses = decision.kind == Decision::Kind::Refuse;
+    ++(keeps ? kept : refuses ? refused : marked);
+    const char* verb = keeps ? "keep" : refuses ? "refuse" : "mark";
+    if (arguments.json) {
+      nlohmann::ordered_json json = {{"plan", verb}};
+      put_path(json, "mesh", job.mesh);
+      put_path(json, "out", job.out);
+      json["scheme"] = job.request.options.scheme;
+      if (!decision.reason.empty()) json["reason"] = decision.reason;
+      std::cout << to_line(json);
+      return;
+    }
+    std::cout << verb << " " << printable(job.mesh.string()) << " -> "
+              << printable(job.out.string());
+    if (!decision.reason.empty()) std::cout << " (" << printable(decision.reason) << ")";
+    std::cout << "\n";
+  };
+  const std::atomic<bool> stop{false};
+  const auto source = jobs.open();
+  if (resume) {
+    plan_jobs(*source, *resume, print, stop);
+  } else {
+    while (const std::optional<Job> job = source->next()) print(*job, {});
+  }
+  if (!arguments.run.is_quiet()) {
+    std::cerr << "triglyph: " << marked << " to mark, " << kept << " to keep, " << refused
+              << " to refuse\n";
+  }
+  return refused == 0 ? kDone : kSomeFailed;
+}
+
+int mark_share(const MarkArguments& arguments, const Jobs& jobs, const Key& key,
+               const WorkOrder& order) {
+  // a worker that came before has checked the plan and left its size
+  std::atomic<std::uint64_t>& total = order.board->total;
+  if (order.is_first) total = check_plan(*jobs.open(), own_files(arguments));
+  Ledger ledger(ledger_of(arguments));
+  const LoggedRun run(&ledger, order, "mark");
+  const Resume resume(ledger, run.id(), key, arguments.resume);
+  RunContext context = arguments.run.context(order);
+  context.resume = &resume;
+  const auto source = jobs.open();
+  const std::atomic<bool>& stop = order.board->stop();
+  if (order.only) {
+    run_jobs(*source, key, context, {}, stop);
+    return kDone;
+  }
+  MarkReport report(arguments, order, total);
+  run_jobs(*source, key, context,
+           {.completed = [&](const Record& record) { report.completed(record); },
+            .delivered = [&](const Record& record) { report.delivered(record); }},
+           stop);
+  const int code = report.finish(stop);
+  run.end(code);
+  return code;
+}
+
 int run_mark(const MarkArguments& arguments) {
   const Key key = arguments.key.load();
-  const std::size_t total = check_plan(*open_jobs(arguments));
-  const auto jobs = open_jobs(arguments);
-  std::optional<RenderBatch> pictures;
-  if (!arguments.pictures.empty()) pictures.emplace(renderer_arguments(arguments));
-  RecordPrinter printer(arguments, total);
-  const std::atomic<bool>& stop = interrupt_flag();
-  FlowOptions options;
-  options.memory_bytes = arguments.machine.memory_bytes();
-  with_threads(arguments.machine.threads(), [&] {
-    run_jobs(
-        *jobs, key, options,
-        [&](const Record& record) {
-          printer.print(record);
-          if (pictures && record.file.is_marked()) {
-            pictures->draw(record.file.mesh, record.file.out, picture_of(record, arguments));
-          }
-        },
-        stop);
-  });
-  std::size_t failed = printer.finish();
-  if (pictures && stop) pictures->stop();
-  if (pictures && !pictures->finish()) {
-    std::cerr << "triglyph: not all pictures were drawn\n";
-    ++failed;
-  }
-  if (stop) return kInterrupted;
-  return failed == 0 ? kDone : kSomeFailed;
+  const Jobs jobs(arguments);
+  if (arguments.dry_run) return print_plan(arguments, jobs, key);
+  return arguments.run.supervised(
+      [&](const WorkOrder& order) { return mark_share(arguments, jobs, key, order); });
 }
 
 }  // namespace
@@ -154,9 +263,11 @@ int run_mark(const MarkArguments& arguments) {
 void add_mark_verb(CLI::App& app, Action& action) {
   CLI::App* verb = app.add_subcommand("mark", "Hide a message in meshes");
   auto arguments = std::make_shared<MarkArguments>();
-  verb->add_option("inputs", arguments->inputs, "A manifest (.jsonl), or meshes")
+  verb->add_option("inputs", arguments->inputs,
+                   "A manifest (.jsonl), or meshes, folders, globs, or - for a list on standard "
+                   "input")
       ->required()
-      ->type_name("MANIFEST|MESH");
+      ->type_name("MANIFEST|INPUT");
   verb->add_option("--out", arguments->out, "Directory for the marked files")->type_name("DIR");
   add_declared_options(*verb, mark_option_specs(), arguments->values);
   verb->add_option("--records", arguments->records, "Write one JSON record per mesh to this file")
@@ -165,14 +276,20 @@ void add_mark_verb(CLI::App& app, Action& action) {
                    "Draw a picture that compares each mesh with its marked copy, in this directory")
       ->type_name("DIR");
   verb->add_flag("--json", arguments->json, "Print the records instead of a table");
+  verb->add_flag("--force", arguments->resume.force,
+                 "Mark every mesh, also those that an earlier run marked as asked, and replace "
+                 "outputs made from other meshes");
+  verb->add_flag("--no-clobber", arguments->resume.no_clobber,
+                 "Keep existing files that the ledger does not know");
+  verb->add_flag("--dry-run", arguments->dry_run, "Print what would be done, and do nothing");
   arguments->key.add_to(*verb);
-  arguments->machine.add_threads_to(*verb);
-  arguments->machine.add_memory_to(*verb);
+  arguments->run.add_to(*verb);
   verb->footer(
       "Hide a message in some meshes, and keep what is needed to verify them:\n"
       "  triglyph mark a.obj b.ply --out marked --message \"for Ada\" --key-file owner.key "
       "--records run.jsonl\n"
-      "Mark what a manifest lists, with its own options for each mesh:\n"
+      "Mark what a manifest lists, with its own options for each mesh; the same command again does "
+      "only what is missing or has changed:\n"
       "  triglyph mark collection.jsonl --out marked --key-file owner.key");
   verb->callback([&action, arguments] { action = [arguments] { return run_mark(*arguments); }; });
 }

@@ -30,6 +30,7 @@ class KeyArgument {
  public:
   void add_to(CLI::App& verb);
   [[nodiscard]] Key load() const;
+  [[nodiscard]] const std::filesystem::path& file() const { return file_; }  // empty: trial key
 
  private:
   std::filesystem::path file_;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <ostream>
 #include <string>
@@ -11,13 +10,6 @@
 
 namespace triglyph {
 namespace {
-
-std::atomic<bool> interrupted{false};
-
-void on_signal(int number) {
-  interrupted = true;
-  std::signal(number, SIG_DFL);
-}
 
 double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -49,15 +41,18 @@ void print_table_row(std::ostream& out, const Record& record) {
   const std::string distance =
       file.is_marked() ? format("%.5f%%", 100 * file.hausdorff_rel_diag) : "-";
   out << format("%-32s %9llu %9llu %6u %6u %10s %6.2fs  ",
-                shortened(file.mesh.string(), 32).c_str(),
+                shortened(printable(file.mesh.string()), 32).c_str(),
                 static_cast<unsigned long long>(file.vertices),
                 static_cast<unsigned long long>(file.faces), file.units_valid, file.units_embedded,
                 distance.c_str(), seconds)
-      << name_of(file.status) << "\n";
+      << name_of(file.status) << (record.is_kept ? " (kept)" : "") << "\n";
 }
 
-ProgressBar::ProgressBar(std::size_t total)
-    : total_(total), start_s_(now_s()), visible_(isatty(STDERR_FILENO) == 1) {}
+ProgressBar::ProgressBar(std::size_t total, std::size_t done, bool quiet)
+    : total_(total),
+      done_(done),
+      start_s_(now_s()),
+      visible_(!quiet && isatty(STDERR_FILENO) == 1) {}
 
 ProgressBar::~ProgressBar() {
   clear();
@@ -89,10 +84,49 @@ void ProgressBar::clear() {
   std::fflush(stderr);
 }
 
-const std::atomic<bool>& interrupt_flag() {
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
-  return interrupted;
+namespace {
+
+// Returns the number of bytes of the UTF-8 character at the start of the text, or 0 if there is no
+// valid one (RFC 3629: no overlong forms, no surrogates, nothing above U+10FFFF) or it is a control
+// character.
+std::size_t printable_prefix(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned first = byte(0);
+  if (first < 0x80) return first >= 0x20 && first != 0x7f ? 1 : 0;
+  const std::size_t size = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
+  if (first < 0xc2 || first > 0xf4 || text.size() < size) return 0;
+  unsigned code = first & (0xffU >> (size + 1));
+  for (std::size_t i = 1; i < size; ++i) {
+    if ((byte(i) & 0xc0U) != 0x80) return 0;
+    code = code << 6U | (byte(i) & 0x3fU);
+  }
+  const bool is_overlong = code < (size == 4 ? 0x10000U : size == 3 ? 0x800U : 0x80U);
+  const bool is_surrogate = code >= 0xd800 && code < 0xe000;
+  const bool is_control = code < 0xa0;
+  // marks that change the direction of what follows can make a name look like another
+  const bool turns = (code >= 0x202a && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
+  return is_overlong || is_surrogate || is_control || turns || code > 0x10ffff ? 0 : size;
+}
+
+}  // namespace
+
+std::string printable(std::string_view text) {
+  std::string result;
+  while (!text.empty()) {
+    std::size_t size = printable_prefix(text);
+    if (size > 0) {
+      result += text.substr(0, size);
+    } else {
+      size = 1;
+      result += format("\\x%02x", static_cast<unsigned>(static_cast<unsigned char>(text[0])));
+    }
+    text.remove_prefix(size);
+  }
+  return result;
+}
+
+bool is_printable(std::string_view text) {
+  return !text.empty() && printable(text) == text;
 }
 
 }  // namespace triglyph

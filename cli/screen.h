@@ -1,8 +1,9 @@
 // Terminal output and input: a table of records, a progress bar, and the interrupt key.
 #pragma once
 
-#include <atomic>
 #include <iosfwd>
+#include <string>
+#include <string_view>
 
 #include "manifests/record.h"
 
@@ -17,7 +18,8 @@ void print_table_row(std::ostream& out, const Record& record);
 // error is a terminal.
 class ProgressBar {
  public:
-  explicit ProgressBar(std::size_t total);
+  // Starts at `done`, the number of meshes that are done already.
+  ProgressBar(std::size_t total, std::size_t done, bool quiet);
   ~ProgressBar();
   void advance(bool failed);
   void clear();  // before other output to the same terminal
@@ -32,8 +34,11 @@ class ProgressBar {
   bool visible_;
 };
 
-// Returns a flag that becomes true at the first SIGINT or SIGTERM. The second signal ends the
-// process at once.
-[[nodiscard]] const std::atomic<bool>& interrupt_flag();
+// Returns the text as a terminal may show it: valid UTF-8 without control characters is unchanged,
+// any other byte becomes "\\x1b".
+[[nodiscard]] std::string printable(std::string_view text);
+
+// Returns whether the text is valid UTF-8 without control characters, and not empty.
+[[nodiscard]] bool is_printable(std::string_view text);
 
 }  // namespace triglyph

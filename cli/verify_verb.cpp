@@ -1,32 +1,82 @@
-#include <fstream>
+#include <deque>
 #include <iostream>
 #include <memory>
 
 #include "cli/app.h"
 #include "cli/options.h"
+#include "cli/run_arguments.h"
 #include "cli/screen.h"
 #include "cli/verbs.h"
 #include "engine/base/error.h"
-#include "engine/base/parallel.h"
+#include "manifests/inputs.h"
 #include "manifests/json_line.h"
+#include "manifests/records_file.h"
 #include "manifests/run.h"
 
 namespace triglyph {
 namespace {
 
+namespace fs = std::filesystem;
+
 struct VerifyArguments {
-  std::filesystem::path records;
+  std::vector<std::string> inputs;
+  fs::path root;
   bool json = false;
   bool detail = false;
   KeyArgument key;
-  MachineArguments machine;
+  RunArguments run;
 };
 
-Record parse_line(const VerifyArguments& arguments, const std::string& line,
-                  std::size_t number) try {
-  return parse_record(line);
-} catch (const Error& error) {
-  throw Error(ErrorCode::Malformed, arguments.records, at_line(number), error.message());
+// Returns the records of all files of records and ledgers, one after another.
+RecordSource records_in(std::span<const std::string> inputs) {
+  auto sources = std::make_shared<std::deque<RecordSource>>();
+  for (const std::string& input : inputs) {
+    if (!is_ledger_file(input)) {
+      sources->push_back(open_records(input));
+      continue;
+    }
+    auto records = std::make_shared<std::deque<std::string>>();
+    Ledger(input).for_each_item([&](const LedgerItem& item) { records->push_back(item.record); });
+    sources->push_back([records]() -> std::optional<Record> {
+      if (records->empty()) return std::nullopt;
+      Record record = parse_record(records->front());
+      records->pop_front();
+      return record;
+    });
+  }
+  return [sources]() -> std::optional<Record> {
+    while (!sources->empty()) {
+      if (std::optional<Record> record = sources->front()()) return record;
+      sources->pop_front();
+    }
+    return std::nullopt;
+  };
+}
+
+// Returns the records that the ledger has of the files.
+RecordSource records_of(const std::vector<fs::path>& files, const fs::path& ledger_path) {
+  auto ledger = std::make_shared<Ledger>(ledger_path);
+  auto next = std::make_shared<std::size_t>(0);
+  return [files, ledger, next]() -> std::optional<Record> {
+    if (*next == files.size()) return std::nullopt;
+    const fs::path& file = files[(*next)++];
+    const std::optional<LedgerItem> item = ledger->find(canonical_name(file));
+    Record record;
+    if (item) record = parse_record(item->record);
+    record.file.out = file;
+    if (!item) record.file.error = "the ledger knows no such output";
+    return record;
+  };
+}
+
+// Returns the file of a record: where the run stood, or below --root; else as it is named.
+fs::path file_of(const Record& record, const fs::path& root) {
+  const fs::path& out = record.file.out;
+  if (out.is_absolute()) return out;
+  if (!root.empty()) return root / out;
+  std::error_code ignored;
+  const fs::path there = fs::path(record.directory) / out;
+  return !record.directory.empty() && fs::exists(there, ignored) ? there : out;
 }
 
 // Returns ascending numbers as ranges: "3-17 20 22-24".
@@ -62,10 +112,11 @@ void print_damage(const Verification& found) {
 
 void print(const VerifyArguments& arguments, const Record& record, const Verification& found) {
   if (arguments.json) {
-    nlohmann::ordered_json json = {{"out", record.file.out.string()},
-                                   {"verdict", name_of(found.verdict)},
-                                   {"units_recorded", record.file.units_embedded},
-                                   {"units_found", found.units_found}};
+    nlohmann::ordered_json json;
+    put_path(json, "out", record.file.out);
+    json["verdict"] = name_of(found.verdict);
+    json["units_recorded"] = record.file.units_embedded;
+    json["units_found"] = found.units_found;
     if (!found.detail.empty()) json["detail"] = found.detail;
     if (found.damage) {
       json["damage"] = {{"units_expected", found.damage->units_expected},
@@ -75,41 +126,63 @@ void print(const VerifyArguments& arguments, const Record& record, const Verific
     std::cout << to_line(json);
     return;
   }
-  std::cout << record.file.out.string() << ": " << name_of(found.verdict) << ", "
+  std::cout << printable(record.file.out.string()) << ": " << name_of(found.verdict) << ", "
             << found.units_found << " of " << record.file.units_embedded << " units";
-  if (!found.detail.empty()) std::cout << " (" << found.detail << ")";
+  if (!found.detail.empty()) std::cout << " (" << printable(found.detail) << ")";
   std::cout << "\n";
   if (arguments.detail) print_damage(found);
 }
 
+std::vector<std::string_view> verdict_names() {
+  std::vector<std::string_view> names;
+  for (int verdict = 0; verdict <= static_cast<int>(FileVerdict::NotMarked); ++verdict) {
+    names.push_back(name_of(static_cast<FileVerdict>(verdict)));
+  }
+  return names;
+}
+
 int run_verify(const VerifyArguments& arguments) {
   const Key key = arguments.key.load();
-  std::ifstream stream(arguments.records);
-  if (std::filesystem::is_directory(arguments.records) || !stream) {
-    throw Error(ErrorCode::Unreadable, arguments.records, "", "the records cannot be read");
+  // without a ledger the inputs are records; with one they are files that it knows, or all
+  const fs::path& ledger = arguments.run.ledger();
+  if (arguments.inputs.empty() && ledger.empty()) {
+    throw Error(ErrorCode::Usage, {}, "", "name files of records, or --ledger");
   }
-  std::size_t number = 0;
-  const auto next_record = [&]() -> std::optional<Record> {
-    std::string line;
-    if (!std::getline(stream, line)) return std::nullopt;
-    return parse_line(arguments, line, ++number);
-  };
-  bool all_good = true;
-  const std::atomic<bool>& stop = interrupt_flag();
-  FlowOptions options;
-  options.memory_bytes = arguments.machine.memory_bytes();
-  with_threads(arguments.machine.threads(), [&] {
+  std::vector<std::string> inputs = arguments.inputs;
+  std::vector<fs::path> files;
+  if (!ledger.empty() && !inputs.empty()) files = gather_files(inputs, std::cin);
+  if (inputs.empty()) inputs = {ledger.string()};
+  if (!ledger.empty() && !is_ledger_file(ledger)) {
+    throw Error(ErrorCode::Unreadable, ledger, "", "is no ledger");
+  }
+  return arguments.run.supervised([&](const WorkOrder& order) {
+    const RecordSource records = files.empty() ? records_in(inputs) : records_of(files, ledger);
+    RunTally tally(arguments.run, order, 0, verdict_names());
+    std::optional<Ledger> log;
+    if (!ledger.empty()) log.emplace(ledger);
+    const LoggedRun run(log ? &*log : nullptr, order, "verify");
+    const auto next = [&]() -> std::optional<Record> {
+      std::optional<Record> record = records();
+      if (record) record->file.out = file_of(*record, arguments.root);
+      return record;
+    };
     verify_files(
-        next_record, key, arguments.detail, options,
+        next, key, arguments.detail, arguments.run.context(order),
         [&](const Record& record, const Verification& found) {
-          all_good = all_good && (found.verdict == FileVerdict::Intact ||
-                                  found.verdict == FileVerdict::NotMarked);
           print(arguments, record, found);
+          check_standard_output();  // nobody is there to read the rest
+          const bool is_unknown = record.file.key_fingerprint.empty() && record.file.parts == 0 &&
+                                  !record.file.error.empty() && !files.empty();
+          const bool good = !is_unknown && (found.verdict == FileVerdict::Intact ||
+                                            found.verdict == FileVerdict::NotMarked);
+          tally.count(static_cast<std::size_t>(found.verdict), !good, false, record.file.out);
         },
-        stop);
+        order.board->stop());
+    if (order.only) return kDone;
+    const int code = tally.finish("files");
+    run.end(code);
+    return code;
   });
-  if (stop) return kInterrupted;
-  return all_good ? kDone : kSomeFailed;
 }
 
 }  // namespace
@@ -119,20 +192,26 @@ void add_verify_verb(CLI::App& app, Action& action) {
       "verify",
       "Check that the marked files of a run exist, are unchanged and carry their message");
   auto arguments = std::make_shared<VerifyArguments>();
-  verb->add_option("records", arguments->records, "Records written by mark --records")
-      ->required()
-      ->type_name("RECORDS");
+  verb->add_option("inputs", arguments->inputs,
+                   "Records written by mark --records, or ledgers; with --ledger, the files, "
+                   "folders, globs or - that it is asked about (default: all)")
+      ->type_name("RECORDS|INPUT");
+  verb->add_option("--root", arguments->root,
+                   "Look for files with relative names below this directory (default: where the "
+                   "run stood)")
+      ->type_name("DIR");
   verb->add_flag("--json", arguments->json, "Print one JSON object per record");
   verb->add_flag(
       "--detail", arguments->detail,
       "Report which units are damaged, and where, if the record lists units (always with iie; "
       "otherwise with mark --detail)");
   arguments->key.add_to(*verb);
-  arguments->machine.add_threads_to(*verb);
-  arguments->machine.add_memory_to(*verb);
+  arguments->run.add_to(*verb);
   verb->footer(
       "Check the files of a run, and name the vertices of damaged units:\n"
-      "  triglyph verify run.jsonl --key-file owner.key --detail");
+      "  triglyph verify run.jsonl --key-file owner.key --detail\n"
+      "Check all that a ledger knows:\n"
+      "  triglyph verify --ledger marked.ledger --key-file owner.key");
   verb->callback([&action, arguments] { action = [arguments] { return run_verify(*arguments); }; });
 }
 

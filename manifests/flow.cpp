@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <exception>
+#include <map>
+#include <mutex>
 #include <tuple>
 #include <variant>
 
@@ -66,33 +68,64 @@ namespace tbbflow = tbb::flow;
 // A message to the admission node: an item that waits, or memory that is free again.
 using Request = std::variant<ItemPointer, Released>;
 
-// source -> window -> announce -> admit -> stage ... stage -> release -> in order -> deliver
-//             ^                     ^                            |                      |
-//             |                     +------- memory released ----+                      |
-//             +------------------------ one more may be known --------------------------+
+// Delivers items in their order, each as soon as all before it are there. It is called by the
+// thread that completed an item: as a node of the graph it would wait while a single thread has
+// other items to process, and a run that is killed would know nothing of the files that it wrote.
+class Delivery {
+ public:
+  explicit Delivery(const Flow& flow) : flow_(flow) {}
+
+  // Returns the number of items delivered.
+  int take(const ItemPointer& item) {
+    const std::lock_guard lock(mutex_);
+    if (flow_.completed) flow_.completed(*item);
+    waiting_.emplace(item->index, item);
+    int delivered = 0;
+    for (auto first = waiting_.begin(); first != waiting_.end() && first->first == next_;
+         first = waiting_.erase(first)) {
+      flow_.deliver(*first->second);
+      ++next_;
+      ++delivered;
+    }
+    return delivered;
+  }
+
+ private:
+  const Flow& flow_;
+  std::mutex mutex_;
+  std::map<std::size_t, ItemPointer> waiting_;  // by index
+  std::size_t next_ = 0;
+};
+
+// source -> window -> announce -> admit -> work, completion and delivery
+//             ^                     ^         |   |
+//             |                     +- memory +   |
+//             +---- that many more may be known --+
 class Graph {
  public:
   Graph(const Flow& flow, const FlowOptions& options, const std::atomic<bool>& stop)
       : flow_(flow),
         stop_(stop),
         admission_(options.memory_bytes),
+        delivery_(flow),
         source_(graph_, [this](tbb::flow_control& control) { return next_item(control); }),
         window_(graph_, kWindow),
         announce_(graph_, tbbflow::serial, [](const ItemPointer& item) { return Request(item); }),
         admit_(graph_, tbbflow::serial,
                [this](const Request& request, auto& ports) { decide(request, ports); }),
-        release_(graph_, tbbflow::unlimited,
-                 [](const ItemPointer& item, auto& ports) {
-                   std::get<1>(ports).try_put(Released{item->memory_estimate});
-                   std::get<0>(ports).try_put(item);
-                 }),
-        in_order_(graph_, [](const ItemPointer& item) { return item->index; }),
-        deliver_(graph_, tbbflow::serial, [this](const ItemPointer& item) {
-          flow_.deliver(*item);
-          return 1;
+        work_(graph_, tbbflow::unlimited, [this](const ItemPointer& item, auto& ports) {
+          flow_.work(*item);
+          std::get<0>(ports).try_put(Released{item->memory_estimate});
+          if (const int delivered = delivery_.take(item); delivered > 0) {
+            std::get<1>(ports).try_put(delivered);
+          }
         }) {
-    add_stages();
-    connect();
+    tbbflow::make_edge(source_, window_);
+    tbbflow::make_edge(window_, announce_);
+    tbbflow::make_edge(announce_, admit_);
+    tbbflow::make_edge(tbbflow::output_port<0>(admit_), work_);
+    tbbflow::make_edge(tbbflow::output_port<0>(work_), admit_);
+    tbbflow::make_edge(tbbflow::output_port<1>(work_), window_.decrementer());
   }
 
   void run() {
@@ -102,18 +135,6 @@ class Graph {
   }
 
  private:
-  using Stage = tbbflow::function_node<ItemPointer, ItemPointer>;
-
-  void add_stages() {
-    for (const auto& work : flow_.stages) {
-      stages_.push_back(
-          std::make_unique<Stage>(graph_, tbbflow::unlimited, [&work](const ItemPointer& item) {
-            work(*item);
-            return item;
-          }));
-    }
-  }
-
   ItemPointer next_item(tbb::flow_control& control) {
     try {
       if (!stop_) {
@@ -133,24 +154,10 @@ class Graph {
     while (const ItemPointer item = admission_.admit()) std::get<0>(ports).try_put(item);
   }
 
-  void connect() {
-    tbbflow::make_edge(source_, window_);
-    tbbflow::make_edge(window_, announce_);
-    tbbflow::make_edge(announce_, admit_);
-    tbbflow::make_edge(tbbflow::output_port<0>(admit_), *stages_.front());
-    for (std::size_t i = 1; i < stages_.size(); ++i) {
-      tbbflow::make_edge(*stages_[i - 1], *stages_[i]);
-    }
-    tbbflow::make_edge(*stages_.back(), release_);
-    tbbflow::make_edge(tbbflow::output_port<0>(release_), in_order_);
-    tbbflow::make_edge(tbbflow::output_port<1>(release_), admit_);
-    tbbflow::make_edge(in_order_, deliver_);
-    tbbflow::make_edge(deliver_, window_.decrementer());
-  }
-
   const Flow& flow_;
   const std::atomic<bool>& stop_;
   Admission admission_;
+  Delivery delivery_;
   std::exception_ptr failure_;
 
   tbbflow::graph graph_;
@@ -158,10 +165,7 @@ class Graph {
   tbbflow::limiter_node<ItemPointer, int> window_;
   tbbflow::function_node<ItemPointer, Request> announce_;
   tbbflow::multifunction_node<Request, std::tuple<ItemPointer>> admit_;
-  std::vector<std::unique_ptr<Stage>> stages_;
-  tbbflow::multifunction_node<ItemPointer, std::tuple<ItemPointer, Request>> release_;
-  tbbflow::sequencer_node<ItemPointer> in_order_;
-  tbbflow::function_node<ItemPointer, int> deliver_;
+  tbbflow::multifunction_node<ItemPointer, std::tuple<Request, int>> work_;
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
 // Parallel processing of many files: a oneTBB flow graph that starts the largest waiting item that
-// fits into the memory budget, runs its stages, and delivers the items in input order.
+// fits into the memory budget, processes it, and delivers the items in input order.
 #pragma once
 
 #include <atomic>
@@ -27,15 +27,17 @@ struct Flow {
   // Returns the items in order, numbered from 0, and null at the end. Called by one thread at a
   // time. An exception ends the run after the items in process, and run_flow() rethrows it.
   std::function<std::unique_ptr<FlowItem>()> next;
-  // Run one after another for an item, and in parallel for different items. Must not throw.
-  std::vector<std::function<void(FlowItem&)>> stages;
-  // Called in the order of the items, one call at a time. An exception cancels the run, and
-  // run_flow() rethrows it.
+  // Processes an item; runs in parallel for different items. Must not throw.
+  std::function<void(FlowItem&)> work;
+  // Both are called after the work, one call at a time, by the thread that did the work:
+  // `completed` at once, `deliver` in the order of the items. An exception cancels the run, and
+  // run_flow() rethrows it. `completed` may be empty.
+  std::function<void(FlowItem&)> completed;
   std::function<void(FlowItem&)> deliver;
 };
 
 // Runs the flow to its end. When `stop` becomes true, no further item is requested; items that were
-// returned already still pass through the stages, which may check `stop` themselves.
+// returned already are still processed; the work may check `stop` itself.
 void run_flow(const Flow& flow, const FlowOptions& options, const std::atomic<bool>& stop);
 
 }  // namespace triglyph

@@ -54,20 +54,24 @@ std::vector<fs::path> meshes_of_manifest(const fs::path& manifest) {
   return meshes;
 }
 
-std::vector<fs::path> files_named(const std::string& name) {
-  const bool has_control =
-      std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < 32 || c == 127; });
-  if (name.empty() || has_control) {
-    throw Error(ErrorCode::Usage, {}, "", "a file name is empty or holds a control character");
-  }
+std::vector<NamedFile> with_root(std::vector<fs::path> paths, const fs::path& root) {
+  std::vector<NamedFile> files;
+  for (fs::path& path : paths) files.push_back({std::move(path), root});
+  return files;
+}
+
+std::vector<NamedFile> files_named(const std::string& name) {
+  check_name(name);
   const fs::path path(name);
   std::error_code ignored;
-  if (fs::is_directory(path, ignored)) return meshes_in_folder(path);
-  if (path.extension() == ".jsonl") return meshes_of_manifest(path);
-  if (fs::exists(path, ignored) || name.find_first_of("*?[") == name.npos) return {path};
+  if (fs::is_directory(path, ignored)) return with_root(meshes_in_folder(path), path);
+  if (path.extension() == ".jsonl") return with_root(meshes_of_manifest(path), path.parent_path());
+  if (fs::exists(path, ignored) || name.find_first_of("*?[") == name.npos) {
+    return {{path, path.parent_path()}};
+  }
   std::vector<fs::path> found = expand_glob(path);
   if (found.empty()) throw Error(ErrorCode::Usage, path, "", "matches no file");
-  return found;
+  return with_root(std::move(found), glob_root(path));
 }
 
 }  // namespace
@@ -80,12 +84,20 @@ bool is_mesh_name(const fs::path& path) {
   return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
 }
 
-std::vector<fs::path> gather_files(std::span<const std::string> names, std::istream& list) {
-  std::vector<fs::path> files;
+void check_name(const std::string& name) {
+  const bool has_control =
+      std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < 32 || c == 127; });
+  if (name.empty() || has_control) {
+    throw Error(ErrorCode::Usage, {}, "", "a file name is empty or holds a control character");
+  }
+}
+
+std::vector<NamedFile> gather_named_files(std::span<const std::string> names, std::istream& list) {
+  std::vector<NamedFile> files;
   std::unordered_set<std::string> known;
   const auto add = [&](const std::string& name) {
-    for (fs::path& file : files_named(name)) {
-      if (known.insert(file.string()).second) files.push_back(std::move(file));
+    for (NamedFile& file : files_named(name)) {
+      if (known.insert(file.path.string()).second) files.push_back(std::move(file));
     }
   };
   for (const std::string& name : names) {
@@ -96,6 +108,12 @@ std::vector<fs::path> gather_files(std::span<const std::string> names, std::istr
     for (const std::string& listed : names_in(list)) add(listed);
   }
   return files;
+}
+
+std::vector<fs::path> gather_files(std::span<const std::string> names, std::istream& list) {
+  std::vector<fs::path> paths;
+  for (NamedFile& file : gather_named_files(names, list)) paths.push_back(std::move(file.path));
+  return paths;
 }
 
 }  // namespace triglyph

@@ -12,13 +12,26 @@ namespace triglyph {
 // Returns whether the extension, in any case, is that of a format that MeshFile reads.
 [[nodiscard]] bool is_mesh_name(const std::filesystem::path& path);
 
+// A file, and the folder in which its place matters: the folder named, the fixed part of the
+// pattern, or that of a file named for itself.
+struct NamedFile {
+  std::filesystem::path path;
+  std::filesystem::path root;
+};
+
 // Returns the files in the order named, without duplicates. A folder stands for all meshes in it at
 // any depth, sorted by name; a pattern, unless a file has that name, for its matches; a .jsonl file
 // for the meshes of that manifest; "-" for the names in `list`, one per line, or separated by NUL
 // bytes if it has any. Other names stand for themselves, whether or not such a file exists. Throws
 // Error Unreadable for a folder that cannot be read, Malformed for an invalid manifest, and Usage
 // for a pattern without matches or a name with a control character.
+[[nodiscard]] std::vector<NamedFile> gather_named_files(std::span<const std::string> names,
+                                                        std::istream& list);
 [[nodiscard]] std::vector<std::filesystem::path> gather_files(std::span<const std::string> names,
                                                               std::istream& list);
+
+// Throws Error Usage for a name that is empty or holds a control character, which no mesh needs and
+// which would mislead those who read it on a terminal; also NUL, at which the system cuts it off.
+void check_name(const std::string& name);
 
 }  // namespace triglyph

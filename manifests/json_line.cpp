@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/base/error.h"
+#include "engine/message/key.h"
 
 namespace triglyph {
 namespace {
@@ -59,6 +60,22 @@ std::string plain_message(const Json::exception& error) {
 
 }  // namespace
 
+bool read_line(std::istream& stream, std::string& line) try {
+  line.clear();
+  std::streambuf& buffer = *stream.rdbuf();
+  for (int next = buffer.sbumpc(); next != EOF; next = buffer.sbumpc()) {
+    if (next == '\n') return true;
+    if (line.size() == kLongestLine) {
+      throw Error(ErrorCode::Malformed, {}, "",
+                  "longer than " + std::to_string(kLongestLine >> 20) + " MiB");
+    }
+    line += static_cast<char>(next);
+  }
+  return !line.empty();
+} catch (const std::ios_base::failure& error) {
+  throw Error(ErrorCode::Unreadable, {}, "", error.code().message());
+}
+
 Json parse_json_line(const std::string& line) try {
   StrictLine strict;
   Json json = Json::parse(line, [&](int depth, Json::parse_event_t event, const Json& parsed) {
@@ -83,6 +100,25 @@ OptionValue option_value(const std::string& key, const Json& json) {
 
 Json to_json(const OptionValue& value) {
   return std::visit([](const auto& plain) { return Json(plain); }, value);
+}
+
+void put_path(Json& json, const std::string& key, const std::filesystem::path& path) {
+  const std::string& bytes = path.native();
+  json[key] = bytes;
+  try {
+    (void)json[key].dump();
+  } catch (const Json::exception&) {
+    json[key + "_bytes"] = to_hex(Message(bytes.begin(), bytes.end()));
+  }
+}
+
+std::filesystem::path path_in(const Json& json, const std::string& key) {
+  const auto exact = json.find(key + "_bytes");
+  if (exact == json.end()) return json.value(key, std::string());
+  if (!exact->is_string())
+    throw Error(ErrorCode::Malformed, {}, "", "\"" + exact.key() + "\" is text");
+  const Message bytes = from_hex(exact->get<std::string>());
+  return std::string(bytes.begin(), bytes.end());
 }
 
 std::string to_line(const Json& json) {

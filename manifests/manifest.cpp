@@ -8,6 +8,7 @@
 
 #include "engine/base/error.h"
 #include "manifests/json_line.h"
+#include "manifests/resume.h"
 
 namespace triglyph {
 namespace {
@@ -38,14 +39,6 @@ fs::path place_below(const fs::path& directory, const fs::path& mesh, const fs::
   const fs::path relative = mesh.lexically_relative(root);
   const bool inside = !relative.empty() && *relative.begin() != "..";
   return directory / (inside ? relative : mesh.filename());
-}
-
-// Returns the canonical name of a file, which need not exist.
-std::string canonical_name(const fs::path& path) {
-  std::error_code error;
-  const fs::path absolute = fs::absolute(path, error);
-  const fs::path directory = fs::weakly_canonical(absolute.parent_path(), error);
-  return (directory / absolute.filename()).lexically_normal().string();
 }
 
 }  // namespace
@@ -95,6 +88,39 @@ ManifestReader::ManifestReader(const fs::path& manifest, const OptionValues& val
   if (fs::is_directory(manifest) || !stream_) {
     throw Error(ErrorCode::Unreadable, manifest, "", "the manifest cannot be read");
   }
+  note_names();
+}
+
+bool ManifestReader::next_line(std::string& line) try {
+  ++line_;
+  return triglyph::read_line(stream_, line);
+} catch (const Error& error) {
+  fail(error.message());
+}
+
+// Only globs need to know, and only lines that a glob may have matched matter; errors are left to
+// the reading proper.
+void ManifestReader::note_names() {
+  bool has_glob = false;
+  std::string line;
+  while (next_line(line)) {
+    try {
+      const Json object = parse_json_line(line);
+      if (!object.contains("mesh") || !object["mesh"].is_string()) continue;
+      const auto name = object["mesh"].get<std::string>();
+      if (has_wildcard(name)) {
+        has_glob = true;
+      } else {
+        named_.insert(std::hash<std::string>{}(canonical_name(manifest_.parent_path() / name)));
+      }
+    } catch (const Error&) {
+      break;
+    }
+  }
+  if (!has_glob) named_.clear();
+  stream_.clear();
+  stream_.seekg(0);
+  line_ = 0;
 }
 
 void ManifestReader::fail(const std::string& message) const {
@@ -103,8 +129,7 @@ void ManifestReader::fail(const std::string& message) const {
 
 std::optional<Job> ManifestReader::next() {
   std::string line;
-  while (ready_.empty() && std::getline(stream_, line)) {
-    ++line_;
+  while (ready_.empty() && next_line(line)) {
     if (line.find_first_not_of(" \t\r") != line.npos) read_line(line);
   }
   if (ready_.empty()) return std::nullopt;
@@ -136,6 +161,7 @@ ManifestReader::Line ManifestReader::parse(const std::string& text) const {
   for (const auto& [key, value] : keys.items()) {
     if (key == "out" || (key == "mesh" && !line.is_heading)) {
       if (!value.is_string()) fail("\"" + key + "\" is a path");
+      check_name(value.get_ref<const std::string&>());
       (key == "out" ? line.out : line.mesh) = value.get<std::string>();
       continue;
     }
@@ -154,9 +180,14 @@ void ManifestReader::add_jobs(const Line& line) {
   const std::string out = line.out.value_or(default_out_);
   const fs::path base = manifest_.parent_path();
   const fs::path pattern = base / *line.mesh;
-  const std::vector<fs::path> meshes = expand_glob(pattern);
+  std::vector<fs::path> meshes = expand_glob(pattern);
   if (meshes.empty()) fail("\"mesh\" matches no file: " + pattern.string());
   const bool is_glob = has_wildcard(pattern.string());
+  if (is_glob && !named_.empty()) {
+    std::erase_if(meshes, [&](const fs::path& mesh) {
+      return named_.contains(std::hash<std::string>{}(canonical_name(mesh)));
+    });
+  }
   const bool names_file = !out.empty() && out.back() != '/';
   if (names_file && is_glob) fail("\"out\" of a glob must end in \"/\"");
   if (out.empty() && out_directory_.empty()) fail("\"out\" is missing and no --out was given");
@@ -183,34 +214,58 @@ void ManifestReader::read_line(const std::string& text) try {
   throw;
 }
 
-MeshList::MeshList(std::vector<fs::path> meshes, const OptionValues& values,
+MeshList::MeshList(std::vector<NamedFile> meshes, const OptionValues& values,
                    const fs::path& out_directory)
     : meshes_(std::move(meshes)), request_(resolve(values)), out_directory_(out_directory) {}
 
 std::optional<Job> MeshList::next() {
   if (next_ == meshes_.size()) return std::nullopt;
-  const fs::path& mesh = meshes_[next_];
-  return Job{next_++, mesh, out_directory_ / mesh.filename(), request_};
+  const NamedFile& mesh = meshes_[next_];
+  return Job{next_++, mesh.path, place_below(out_directory_, mesh.path, mesh.root), request_};
 }
 
-std::size_t check_plan(JobSource& jobs) {
+std::size_t check_plan(JobSource& jobs, std::span<const OwnFile> own_files) {
   constexpr unsigned kInput = 1;
   constexpr unsigned kOutput = 2;
-  std::unordered_map<std::size_t, unsigned> uses;  // by hash of a canonical name
+  std::unordered_map<std::size_t, unsigned> uses;         // by hash of a canonical name
+  std::unordered_map<std::size_t, std::string> own_uses;  // likewise: what it is
+  const auto hash = [](const std::string& name) { return std::hash<std::string>{}(name); };
+  const auto target_of = [](const fs::path& path) -> std::optional<std::string> {
+    std::error_code error;
+    const fs::path target = fs::canonical(path, error);  // the target of a symbolic link
+    return error ? std::nullopt : std::optional(target.string());
+  };
   const auto use = [&](const std::string& name, unsigned as, unsigned excluded,
-                       const fs::path& path, const char* clash) {
-    unsigned& known = uses[std::hash<std::string>{}(name)];
-    if ((known & excluded) != 0) throw Error(ErrorCode::Usage, path, "", clash);
+                       const fs::path& path, const std::string& clash) {
+    const std::size_t id = hash(name);
+    unsigned& known = uses[id];
+    if ((known & excluded) != 0) {
+      const auto own = own_uses.find(id);
+      throw Error(ErrorCode::Usage, path, "",
+                  own == own_uses.end() ? clash : "is " + own->second + " of the run as well");
+    }
     known |= as;
   };
+  for (const OwnFile& own : own_files) {
+    const unsigned as = own.is_written ? kOutput : kInput;
+    const unsigned excluded = own.is_written ? kInput | kOutput : kOutput;
+    const std::string name = canonical_name(own.path);
+    use(name, as, excluded, own.path, "two files of the run have this name");
+    own_uses.emplace(hash(name), own.what);
+    const auto target = target_of(own.path);
+    if (!target || *target == name) continue;
+    use(*target, as, excluded, own.path, "two files of the run have this name");
+    own_uses.emplace(hash(*target), own.what);
+  }
   std::size_t count = 0;
   while (const std::optional<Job> job = jobs.next()) {
     ++count;
-    const char* lost = "an output of the run would overwrite this mesh";
-    use(canonical_name(job->mesh), kInput, kOutput, job->mesh, lost);
-    std::error_code error;
-    const fs::path target = fs::canonical(job->mesh, error);  // the target of a symbolic link
-    if (!error) use(target.string(), kInput, kOutput, job->mesh, lost);
+    const std::string lost = "an output of the run would overwrite this mesh";
+    const std::string mesh = canonical_name(job->mesh);
+    use(mesh, kInput, kOutput, job->mesh, lost);
+    if (const auto target = target_of(job->mesh); target && *target != mesh) {
+      use(*target, kInput, kOutput, job->mesh, lost);
+    }
     const std::string out = canonical_name(job->out);
     use(out, 0, kInput, job->out, "the output would overwrite a mesh of the run");
     use(out, kOutput, kOutput, job->out, "two meshes of the run have this output");

@@ -11,8 +11,10 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <unordered_set>
 #include <vector>
 
+#include "manifests/inputs.h"
 #include "manifests/job.h"
 
 namespace triglyph {
@@ -26,12 +28,14 @@ class JobSource {
 };
 
 // The keys of a line are "mesh", "out" and the options of marking (mark_option_specs()); "defaults"
-// takes all of these but "mesh". "out" names a file, or a directory if it ends in "/". Without it
-// the output goes to `out_directory`, at the path of the mesh relative to the manifest, or to the
-// fixed part of the glob.
+// takes all of these but "mesh". A mesh that one line names is not among the matches of another
+// line's glob, so that a line may override a glob. "out" names a file, or a directory if it ends in
+// "/". Without it the output goes to `out_directory`, at the path of the mesh relative to the
+// manifest, or to the fixed part of the glob.
 class ManifestReader final : public JobSource {
  public:
-  // `values` applies where the manifest gives no value. Throws Error Unreadable.
+  // `values` applies where the manifest gives no value. Reads the manifest once to find the meshes
+  // that are named for themselves. Throws Error Unreadable.
   ManifestReader(const std::filesystem::path& manifest, const OptionValues& values,
                  const std::filesystem::path& out_directory);
 
@@ -42,6 +46,8 @@ class ManifestReader final : public JobSource {
  private:
   struct Line;  // a parsed line
 
+  void note_names();
+  bool next_line(std::string& line);
   void read_line(const std::string& line);
   [[nodiscard]] Line parse(const std::string& line) const;
   void add_jobs(const Line& line);
@@ -55,18 +61,20 @@ class ManifestReader final : public JobSource {
   std::size_t line_ = 0;
   std::size_t jobs_ = 0;
   std::deque<Job> ready_;
+  std::unordered_set<std::size_t> named_;  // hashes of the meshes that lines name for themselves
 };
 
-// Jobs for meshes that are named one by one; the output is `out_directory` / file name.
+// Jobs for meshes that are named on the command line; the output lies below `out_directory` as the
+// mesh does below its root.
 class MeshList final : public JobSource {
  public:
   // Throws Error Usage as resolve() does.
-  MeshList(std::vector<std::filesystem::path> meshes, const OptionValues& values,
+  MeshList(std::vector<NamedFile> meshes, const OptionValues& values,
            const std::filesystem::path& out_directory);
   [[nodiscard]] std::optional<Job> next() override;
 
  private:
-  std::vector<std::filesystem::path> meshes_;
+  std::vector<NamedFile> meshes_;
   MarkRequest request_;
   std::filesystem::path out_directory_;
   std::size_t next_ = 0;
@@ -79,8 +87,16 @@ class MeshList final : public JobSource {
 // Returns the longest leading directory of a pattern that has no wildcards.
 [[nodiscard]] std::filesystem::path glob_root(const std::filesystem::path& pattern);
 
-// Checks a run before it starts, and returns the number of jobs. Throws Error Usage if an output
-// would overwrite an input or another output. Takes 16 bytes of memory per job.
-std::size_t check_plan(JobSource& jobs);
+// A file of the run itself.
+struct OwnFile {
+  std::filesystem::path path;
+  std::string what;         // "the records"
+  bool is_written = false;  // otherwise the run reads it
+};
+
+// Checks a run before it starts, and returns the number of jobs. Throws Error Usage if an output or
+// a file of the run would overwrite an input, an output or another file of the run. Takes 16 bytes
+// of memory per job.
+std::size_t check_plan(JobSource& jobs, std::span<const OwnFile> own_files = {});
 
 }  // namespace triglyph

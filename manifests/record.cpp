@@ -45,11 +45,17 @@ std::vector<Carrier> units_in(const Json& json, std::uint32_t parts) {
 
 Json run_of(const Record& record) {
   const StageTimes& times = record.file.times;
-  return {{"load_s", times.load},           {"mark_s", times.mark},
-          {"layout_s", times.layout},       {"assign_s", times.assign},
-          {"write_s", times.write},         {"read_back_s", times.read_back},
-          {"measure_s", times.measure},     {"memory_estimate", record.memory_estimate},
-          {"peak_bytes", record.peak_bytes}};
+  return {{"load_s", times.load},
+          {"mark_s", times.mark},
+          {"layout_s", times.layout},
+          {"assign_s", times.assign},
+          {"write_s", times.write},
+          {"read_back_s", times.read_back},
+          {"measure_s", times.measure},
+          {"memory_estimate", record.memory_estimate},
+          {"peak_bytes", record.peak_bytes},
+          {"directory", record.directory},
+          {"place", record.index}};
 }
 
 void read_run(const Json& run, Record& record) {
@@ -64,6 +70,8 @@ void read_run(const Json& run, Record& record) {
   seconds("measure_s", times.measure);
   record.memory_estimate = run.value("memory_estimate", std::uint64_t{0});
   record.peak_bytes = run.value("peak_bytes", std::uint64_t{0});
+  record.directory = run.value("directory", std::string());
+  record.index = run.value("place", std::size_t{0});
 }
 
 // Returns the request of a record. From schema 1, in which some options are shares, it takes only
@@ -92,11 +100,11 @@ MarkRequest request_in(const Json& json, int schema) {
 Json to_json(const Record& record) {
   const MarkedFile& file = record.file;
   const MarkRequest& request = file.request;
-  Json json = {{"schema", kRecordSchema},
-               {"mesh", file.mesh.string()},
-               {"out", file.out.string()},
-               {"scheme", request.options.scheme},
-               {"status", name_of(file.status)}};
+  Json json = {{"schema", kRecordSchema}};
+  put_path(json, "mesh", file.mesh);
+  put_path(json, "out", file.out);
+  json["scheme"] = request.options.scheme;
+  json["status"] = name_of(file.status);
   if (!file.error.empty()) json["error"] = file.error;
   json.update(Json{{"file_format", file.file_format},
                    {"vertices", file.vertices},
@@ -115,13 +123,16 @@ Json to_json(const Record& record) {
   } else {
     json["message_bits"] = std::uint64_t{file.parts} * file.format.part_bits;
   }
-  json.update(Json{{"cost_max", file.cost_max},
-                   {"cost_sum", file.cost_sum},
-                   {"hausdorff", file.hausdorff},
-                   {"hausdorff_rel_diag", file.hausdorff_rel_diag},
-                   {"displacement_max", file.displacement_max},
-                   {"displacement_rms", file.displacement_rms},
-                   {"input_hash", file.input_hash},
+  // what was not marked has no distance, not a distance of zero
+  if (file.is_marked()) {
+    json.update(Json{{"cost_max", file.cost_max},
+                     {"cost_sum", file.cost_sum},
+                     {"hausdorff", file.hausdorff},
+                     {"hausdorff_rel_diag", file.hausdorff_rel_diag},
+                     {"displacement_max", file.displacement_max},
+                     {"displacement_rms", file.displacement_rms}});
+  }
+  json.update(Json{{"input_hash", file.input_hash},
                    {"output_hash", file.output_hash},
                    {"key", file.key_fingerprint},
                    {"options", options_of(file)}});
@@ -138,8 +149,8 @@ Record parse_record(const std::string& line) try {
   }
   Record record;
   MarkedFile& file = record.file;
-  file.mesh = json.value("mesh", std::string());
-  file.out = json.at("out").get<std::string>();
+  file.mesh = path_in(json, "mesh");
+  file.out = path_in(json, "out");
   const auto status = file_status(json.at("status").get<std::string>());
   if (!status) refuse("unknown status " + json.at("status").dump());
   file.status = *status;

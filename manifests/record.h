@@ -1,5 +1,6 @@
 // Records: one JSON object per mesh and line, with keys in a fixed order. Everything but the object
-// "run" depends on the inputs alone, so the records of two runs can be compared without it.
+// "run" depends on the inputs alone, so the records of two runs can be compared without it. A name
+// that is not UTF-8 is also there byte for byte, in hexadecimal: "mesh_bytes", "out_bytes".
 #pragma once
 
 #include <cstdint>
@@ -17,9 +18,13 @@ inline constexpr int kRecordSchema = 2;
 
 struct Record {
   MarkedFile file;
-  std::size_t index = 0;              // place in the run, from 0; not written
+  std::size_t index = 0;              // place in the run, from 0
   std::uint64_t memory_estimate = 0;  // bytes that the run reserved for the mesh
   std::uint64_t peak_bytes = 0;       // peak resident size of the process so far
+  std::string directory = {};         // where the run stood, to which relative names refer
+  std::string task = {};              // see task_hash(); not written
+  bool is_kept = false;               // an earlier run did it; not written
+  bool is_repeated = false;           // an earlier worker of the run reported it; not written
 };
 
 // Returns the record as JSON of the current schema.

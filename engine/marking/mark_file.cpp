@@ -10,6 +10,7 @@
 #include "engine/base/output_file.h"
 #include "engine/base/parallel.h"
 #include "engine/geometry/box.h"
+#include "engine/io/mapped_file.h"
 #include "engine/marking/extract.h"
 #include "engine/marking/mark.h"
 #include "engine/marking/readable.h"
@@ -129,7 +130,12 @@ void FileMarking::describe(const Marking& marking) {
 
 void FileMarking::load() noexcept {
   run_stage(result_.times.load, [&] {
-    work_->file = MeshFile::open(result_.mesh);
+    try {
+      work_->file = MeshFile::open(result_.mesh);
+    } catch (const Error&) {
+      note_input_hash();  // so that a later run knows that it is the same file
+      throw;
+    }
     const MeshFile& file = *work_->file;
     result_.file_format = name_of(file.format());
     result_.vertices = file.vertex_count();
@@ -217,6 +223,14 @@ void FileMarking::publish() noexcept {
   run_stage(seconds, [&] { work_->output->commit(); });
   result_.times.write += seconds;
   work_.reset();
+}
+
+void FileMarking::note_input_hash() noexcept {
+  try {
+    result_.input_hash = content_hash(MappedFile::open(result_.mesh).bytes());
+  } catch (const std::exception&) {
+    result_.input_hash.clear();
+  }
 }
 
 void FileMarking::interrupt() noexcept {

@@ -98,6 +98,10 @@ class FileMarking {
   void measure() noexcept;
   void publish() noexcept;  // gives the output its name, and releases everything but the result
 
+  // Enters the hash of the mesh's file into the result, if the file can be read; load() does so
+  // too.
+  void note_input_hash() noexcept;
+
   // Give the mesh another status than Marked, unless it failed already. To be called only before
   // the output is published.
   void interrupt() noexcept;

@@ -43,7 +43,7 @@ class CliRender : public testing::Test {
 };
 
 TEST_F(CliRender, DrawsPairsAndTurntables) {
-  ASSERT_EQ(triglyph("mark a.obj --out o"), 0);
+  ASSERT_EQ(triglyph("mark --message x a.obj --out o"), 0);
   ASSERT_EQ(triglyph("render a.obj o/a.obj --out pics/pair.png --width 100"), 0) << message();
   EXPECT_TRUE(is_png("pics/pair.png"));
   ASSERT_EQ(triglyph("render a.obj --out t.png --width 100 --turntable 3"), 0) << message();
@@ -87,7 +87,7 @@ TEST_F(CliRender, SaysSoIfTheRendererIsMissing) {
 
 TEST_F(CliRender, DrawsEveryMeshThatARunMarks) {
   folder_.write("tiny.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  EXPECT_EQ(triglyph("mark a.obj tiny.obj b.obj --out o --render p/q"), 3);
+  EXPECT_EQ(triglyph("mark --message x a.obj tiny.obj b.obj --out o --render p/q"), 3);
   EXPECT_TRUE(is_png("p/q/a.obj.png")) << message();
   EXPECT_TRUE(is_png("p/q/b.obj.png"));
   EXPECT_FALSE(fs::exists(folder_ / "p/q/tiny.obj.png"));
@@ -95,7 +95,7 @@ TEST_F(CliRender, DrawsEveryMeshThatARunMarks) {
 
 TEST_F(CliRender, OfARunReportsPicturesThatCannotBe) {
   folder_.write("p", "a file where the folder should be");
-  EXPECT_EQ(triglyph("mark a.obj --out o --render p"), 3);
+  EXPECT_EQ(triglyph("mark --message x a.obj --out o --render p"), 3);
   EXPECT_NE(message().find("not all pictures were drawn"), std::string::npos) << message();
   EXPECT_TRUE(fs::exists(folder_ / "o/a.obj"));
 }

@@ -168,7 +168,7 @@ TEST(CheckPlan, RefusesOutputsThatWouldDestroyAnything) {
 }
 
 TEST(MeshList, PutsFilesIntoOneFolder) {
-  MeshList list({"x/a.obj", "b.stl"}, {{"message", std::string("any")}}, "out");
+  MeshList list({{"x/a.obj", "x"}, {"b.stl", ""}}, {{"message", std::string("any")}}, "out");
   const auto jobs = jobs_of(list);
   ASSERT_EQ(jobs.size(), 2U);
   EXPECT_EQ(jobs[0].out, "out/a.obj");

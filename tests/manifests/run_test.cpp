@@ -61,9 +61,8 @@ class Collection {
     std::vector<Record> records;
     const std::atomic<bool> stop{false};
     with_threads(threads, [&] {
-      run_jobs(
-          jobs, Key::trial(), options, [&](const Record& record) { records.push_back(record); },
-          stop);
+      run_jobs(jobs, Key::trial(), {.flow = options},
+               {.delivered = [&](const Record& record) { records.push_back(record); }}, stop);
     });
     return records;
   }
@@ -127,15 +126,15 @@ TEST(RunJobs, StopsAtAnInterruptWithWholeFilesOnly) {
   std::size_t count = 0;
   FlowOptions options;
   options.memory_bytes = 1;  // one mesh at a time
-  run_jobs(
-      jobs, Key::trial(), options,
-      [&](const Record& record) {
-        if (record.file.status == FileStatus::Marked) {
-          (void)message_in(record.file.out);
-        }
-        stop = ++count >= 2;
-      },
-      stop);
+  run_jobs(jobs, Key::trial(), {.flow = options},
+           {.delivered =
+                [&](const Record& record) {
+                  if (record.file.status == FileStatus::Marked) {
+                    (void)message_in(record.file.out);
+                  }
+                  stop = ++count >= 2;
+                }},
+           stop);
   std::size_t files = 0;
   for (const auto& entry : fs::directory_iterator(collection.folder() / "out/in")) {
     EXPECT_EQ(entry.path().filename().string().front() == '.', false);

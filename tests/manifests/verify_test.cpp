@@ -28,11 +28,10 @@ class RecordedMesh {
  public:
   explicit RecordedMesh(const OptionValues& settings, const Mesh& mesh = test::bumpy_ball().mesh) {
     save(mesh, folder_ / "in.obj");
-    MeshList jobs({folder_ / "in.obj"}, settings, folder_ / "out");
+    MeshList jobs({{folder_ / "in.obj", folder_.path()}}, settings, folder_ / "out");
     const std::atomic<bool> stop{false};
-    run_jobs(
-        jobs, Key::trial(), {}, [&](const Record& record) { line_ = to_json(record).dump(); },
-        stop);
+    run_jobs(jobs, Key::trial(), {},
+             {.delivered = [&](const Record& record) { line_ = to_json(record).dump(); }}, stop);
   }
   [[nodiscard]] MarkedFile record() const { return parse_record(line_).file; }
   [[nodiscard]] const std::string& line() const { return line_; }

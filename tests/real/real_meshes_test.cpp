@@ -261,7 +261,8 @@ TEST(RealMeshes, EveryFileOfACollectionGetsARecord) {
   std::vector<Record> records;
   const std::atomic<bool> stop{false};
   run_jobs(
-      jobs, Key::trial(), {}, [&](const Record& record) { records.push_back(record); }, stop);
+      jobs, Key::trial(), {},
+      {.delivered = [&](const Record& record) { records.push_back(record); }}, stop);
   EXPECT_EQ(records.size(), expected);
   for (const Record& done : records) {
     const MarkedFile& record = done.file;

@@ -1,0 +1,100 @@
+// What every verb that works on many files shares: the options of a run, its supervision, its
+// tallies and its last line.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "cli/options.h"
+#include "manifests/run.h"
+
+namespace triglyph {
+
+// How many files may fail before the run is given up.
+class FailureLimit {
+ public:
+  void add_to(CLI::App& verb);
+
+  // Returns the number of failures that end the run, for `total` files; nothing: no limit.
+  [[nodiscard]] std::optional<std::uint64_t> limit(std::size_t total) const;
+
+ private:
+  std::string most_;  // "10" or "5%"
+  bool fail_fast_ = false;
+};
+
+// The options --threads, --memory, --timeout, --max-failures, --fail-fast, --quiet and --ledger.
+class RunArguments {
+ public:
+  void add_to(CLI::App& verb);
+
+  [[nodiscard]] bool is_quiet() const { return quiet_; }
+  [[nodiscard]] int threads() const { return machine_.threads(); }
+  [[nodiscard]] const std::filesystem::path& ledger() const { return ledger_; }
+  [[nodiscard]] std::optional<std::uint64_t> failure_limit(std::size_t total) const {
+    return failures_.limit(total);
+  }
+  [[nodiscard]] RunContext context(const WorkOrder& order) const;
+
+  // Runs `work` in a supervised process with the threads asked for, and returns the exit code.
+  [[nodiscard]] int supervised(const std::function<int(const WorkOrder&)>& work) const;
+
+ private:
+  MachineArguments machine_;
+  FailureLimit failures_;
+  double timeout_ = 0;
+  bool quiet_ = false;
+  std::filesystem::path ledger_;
+};
+
+// Counts the results of a run by kind, over all its workers; ends the run when too many failed; and
+// says in one line on standard error what came of it.
+class RunTally {
+ public:
+  // `kinds` names the results. The order and its board must outlive the tally.
+  RunTally(const RunArguments& arguments, const WorkOrder& order, std::size_t total,
+           std::vector<std::string_view> kinds);
+
+  void count(std::size_t kind, bool failed, bool kept, const std::filesystem::path& input);
+
+  // Prints the line unless the run is quiet. Returns the exit code: that of an interrupt, of a run
+  // that was given up or had failures, or kDone.
+  [[nodiscard]] int finish(std::string_view noun);
+
+  [[nodiscard]] std::uint64_t failed() const;
+  [[nodiscard]] std::uint64_t counted(std::size_t kind) const;
+
+ private:
+  const RunArguments& arguments_;
+  RunBoard& board_;
+  std::optional<std::uint64_t> limit_;
+  std::vector<std::string_view> kinds_;
+};
+
+// A run in a ledger, from its begin to its end; does nothing where there is no ledger.
+class LoggedRun {
+ public:
+  // Goes on with the run of an earlier worker if the order is not the first.
+  LoggedRun(Ledger* ledger, const WorkOrder& order, std::string_view verb);
+  [[nodiscard]] std::int64_t id() const { return id_; }
+  void end(int exit_code) const;
+
+ private:
+  Ledger* ledger_;
+  std::int64_t id_ = 0;
+};
+
+// The arguments of this process as a shell would take them, for the ledger. To be set by main().
+void set_command_line(int argc, char** argv);
+
+// Throws Error Unwritable if standard output does not take what is written to it.
+void check_standard_output();
+
+}  // namespace triglyph

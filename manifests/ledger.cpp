@@ -1,0 +1,383 @@
+#include "manifests/ledger.h"
+
+#include <array>
+#include <cerrno>
+#include <fstream>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include <fcntl.h>
+#include <sqlite3.h>
+#include <unistd.h>
+
+#include "engine/base/error.h"
+
+namespace triglyph {
+namespace {
+
+namespace fs = std::filesystem;
+
+// "TGLY": tells a ledger from other databases.
+constexpr int kApplicationId = 0x54474c59;
+
+// Milliseconds to wait for another process that writes.
+constexpr int kBusyTimeout = 30000;
+
+// Step i leads from schema i to schema i + 1. Steps are never changed, only added.
+constexpr std::array<const char*, 1> kSteps = {R"sql(
+CREATE TABLE runs (
+  id INTEGER PRIMARY KEY AUTOINCREMENT,
+  verb TEXT NOT NULL,
+  command BLOB NOT NULL,
+  directory BLOB NOT NULL,
+  version TEXT NOT NULL,
+  started TEXT NOT NULL DEFAULT (strftime('%Y-%m-%dT%H:%M:%SZ', 'now')),
+  ended TEXT,
+  outcome TEXT
+);
+CREATE TABLE items (
+  target BLOB PRIMARY KEY,
+  source BLOB NOT NULL,
+  input_hash TEXT NOT NULL,
+  task TEXT NOT NULL,
+  key TEXT NOT NULL,
+  status TEXT NOT NULL,
+  output_hash TEXT NOT NULL,
+  record TEXT NOT NULL,
+  run INTEGER NOT NULL REFERENCES runs (id),
+  place INTEGER NOT NULL,
+  finished TEXT NOT NULL DEFAULT (strftime('%Y-%m-%dT%H:%M:%SZ', 'now'))
+) WITHOUT ROWID;
+CREATE INDEX items_of_run ON items (run, place);
+CREATE TABLE marks (
+  number INTEGER PRIMARY KEY AUTOINCREMENT,
+  message_hex TEXT NOT NULL,
+  recipient TEXT NOT NULL,
+  mesh BLOB NOT NULL,
+  out BLOB NOT NULL,
+  scheme TEXT NOT NULL,
+  options TEXT NOT NULL,
+  key TEXT NOT NULL,
+  input_hash TEXT NOT NULL,
+  output_hash TEXT NOT NULL,
+  issued TEXT NOT NULL DEFAULT (strftime('%Y-%m-%dT%H:%M:%SZ', 'now')),
+  UNIQUE (output_hash, input_hash, key, out)
+);
+CREATE TRIGGER marks_stay_as_they_are BEFORE UPDATE ON marks
+BEGIN SELECT RAISE(ABORT, 'marks are never changed'); END;
+CREATE TRIGGER marks_stay BEFORE DELETE ON marks
+BEGIN SELECT RAISE(ABORT, 'marks are never deleted'); END;
+)sql"};
+constexpr int kSchema = static_cast<int>(kSteps.size());
+
+constexpr const char* kItemColumns =
+    "SELECT target, source, input_hash, task, key, status, output_hash, record, run, place "
+    "FROM items ";
+constexpr const char* kMarkColumns =
+    "SELECT number, message_hex, recipient, mesh, out, scheme, options, key, input_hash, "
+    "output_hash, issued FROM marks ";
+
+}  // namespace
+
+// The connection. One statement runs at a time.
+struct Ledger::Database {
+  fs::path path;
+  sqlite3* handle = nullptr;
+  mutable std::mutex mutex;
+
+  ~Database() { sqlite3_close_v2(handle); }
+
+  [[noreturn]] void fail() const {
+    const int code = sqlite3_errcode(handle) & 0xff;
+    const bool is_other = code == SQLITE_NOTADB || code == SQLITE_CORRUPT;
+    throw Error(is_other ? ErrorCode::Malformed : ErrorCode::Unwritable, path, "",
+                std::string("the ledger: ") + sqlite3_errmsg(handle));
+  }
+
+  void execute(const char* sql) const {
+    if (sqlite3_exec(handle, sql, nullptr, nullptr, nullptr) != SQLITE_OK) fail();
+  }
+};
+
+namespace {
+
+// A statement with its parameters bound in order. Text is bound as bytes where the column is BLOB.
+class LedgerStatement {
+ public:
+  template <typename Database>
+  LedgerStatement(const Database& database, const std::string& sql)
+      : fail_([&database] { database.fail(); }) {
+    if (sqlite3_prepare_v2(database.handle, sql.c_str(), -1, &statement_, nullptr) != SQLITE_OK) {
+      fail_();
+    }
+  }
+  ~LedgerStatement() { sqlite3_finalize(statement_); }
+  LedgerStatement(const LedgerStatement&) = delete;
+  LedgerStatement& operator=(const LedgerStatement&) = delete;
+
+  LedgerStatement& text(std::string_view value) {
+    expect(sqlite3_bind_text(statement_, ++bound_, value.data(), static_cast<int>(value.size()),
+                             SQLITE_TRANSIENT));
+    return *this;
+  }
+  LedgerStatement& bytes(std::string_view value) {
+    expect(sqlite3_bind_blob(statement_, ++bound_, value.empty() ? "" : value.data(),
+                             static_cast<int>(value.size()), SQLITE_TRANSIENT));
+    return *this;
+  }
+  LedgerStatement& number(std::int64_t value) {
+    expect(sqlite3_bind_int64(statement_, ++bound_, value));
+    return *this;
+  }
+
+  // Returns whether there is a row.
+  bool step() {
+    const int code = sqlite3_step(statement_);
+    if (code != SQLITE_ROW && code != SQLITE_DONE) fail_();
+    return code == SQLITE_ROW;
+  }
+
+  [[nodiscard]] std::string text_at(int column) const {
+    const auto* data = static_cast<const char*>(sqlite3_column_blob(statement_, column));
+    const int size = sqlite3_column_bytes(statement_, column);
+    return data == nullptr ? std::string() : std::string(data, static_cast<std::size_t>(size));
+  }
+  [[nodiscard]] std::int64_t number_at(int column) const {
+    return sqlite3_column_int64(statement_, column);
+  }
+
+ private:
+  void expect(int code) {
+    if (code != SQLITE_OK) fail_();
+  }
+
+  std::function<void()> fail_;
+  sqlite3_stmt* statement_ = nullptr;
+  int bound_ = 0;
+};
+
+// Writes several rows or none.
+template <typename Database>
+class LedgerTransaction {
+ public:
+  explicit LedgerTransaction(const Database& database) : database_(database) {
+    database_.execute("BEGIN IMMEDIATE");
+  }
+  ~LedgerTransaction() {
+    if (!done_) sqlite3_exec(database_.handle, "ROLLBACK", nullptr, nullptr, nullptr);
+  }
+  LedgerTransaction(const LedgerTransaction&) = delete;
+  LedgerTransaction& operator=(const LedgerTransaction&) = delete;
+  void commit() {
+    database_.execute("COMMIT");
+    done_ = true;
+  }
+
+ private:
+  const Database& database_;
+  bool done_ = false;
+};
+
+template <typename Database>
+std::int64_t pragma(const Database& database, const char* name) {
+  LedgerStatement statement(database, std::string("PRAGMA ") + name);
+  return statement.step() ? statement.number_at(0) : 0;
+}
+
+template <typename Database>
+void migrate(const Database& database) {
+  LedgerTransaction transaction(database);
+  const auto schema = static_cast<int>(pragma(database, "user_version"));
+  const bool is_new = schema == 0 && pragma(database, "schema_version") == 0;
+  if (!is_new && pragma(database, "application_id") != kApplicationId) {
+    throw Error(ErrorCode::Malformed, database.path, "", "is a database, but no ledger");
+  }
+  if (schema > kSchema) {
+    throw Error(ErrorCode::Malformed, database.path, "",
+                "the ledger has schema " + std::to_string(schema) +
+                    ", which needs a newer triglyph; this one knows up to " +
+                    std::to_string(kSchema));
+  }
+  for (int step = schema; step < kSchema; ++step) {
+    database.execute(kSteps[static_cast<std::size_t>(step)]);
+  }
+  if (schema < kSchema) {
+    database.execute(("PRAGMA application_id=" + std::to_string(kApplicationId)).c_str());
+    database.execute(("PRAGMA user_version=" + std::to_string(kSchema)).c_str());
+  }
+  transaction.commit();
+}
+
+// Creates an empty file with mode 0600 if there is none: it will hold messages and recipients.
+void create_private(const fs::path& path) {
+  if (path.has_parent_path()) {
+    std::error_code error;
+    fs::create_directories(path.parent_path(), error);
+    if (error) throw Error(ErrorCode::Unwritable, path, "", "the ledger: " + error.message());
+  }
+  const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+  if (descriptor < 0) {
+    throw Error(ErrorCode::Unwritable, path, "",
+                "the ledger: " + system_reason(errno) + "; --ledger names another place");
+  }
+  ::close(descriptor);
+}
+
+LedgerItem item_in(const LedgerStatement& row) {
+  return {row.text_at(0),   row.text_at(1),
+          row.text_at(2),   row.text_at(3),
+          row.text_at(4),   row.text_at(5),
+          row.text_at(6),   row.text_at(7),
+          row.number_at(8), static_cast<std::uint64_t>(row.number_at(9))};
+}
+
+LedgerMark mark_in(const LedgerStatement& row) {
+  return {row.number_at(0), row.text_at(1), row.text_at(2), row.text_at(3),
+          row.text_at(4),   row.text_at(5), row.text_at(6), row.text_at(7),
+          row.text_at(8),   row.text_at(9), row.text_at(10)};
+}
+
+}  // namespace
+
+Ledger::Ledger(const fs::path& path) : path_(path), database_(std::make_unique<Database>()) {
+  create_private(path);
+  Database& database = *database_;
+  database.path = path;
+  // absolute, since SQLite reads a name that begins with ":" or "file:" in its own way
+  const std::string name = fs::absolute(path).lexically_normal().string();
+  constexpr int kFlags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX;
+  if (sqlite3_open_v2(name.c_str(), &database.handle, kFlags, nullptr) != SQLITE_OK) {
+    database.fail();
+  }
+  sqlite3_busy_timeout(database.handle, kBusyTimeout);
+  // Readers and a writer do not wait for each other; where a file system cannot share memory,
+  // SQLite keeps its rollback journal, which is as safe.
+  database.execute("PRAGMA journal_mode=WAL");
+  database.execute("PRAGMA synchronous=NORMAL");
+  migrate(database);
+}
+
+Ledger::~Ledger() = default;
+
+std::int64_t Ledger::begin_run(const LedgerRun& run) {
+  const std::lock_guard lock(database_->mutex);
+  LedgerStatement(*database_,
+                  "INSERT INTO runs (verb, command, directory, version) VALUES (?, ?, ?, ?)")
+      .text(run.verb)
+      .bytes(run.command)
+      .bytes(run.directory)
+      .text(run.version)
+      .step();
+  return sqlite3_last_insert_rowid(database_->handle);
+}
+
+void Ledger::end_run(std::int64_t run, std::string_view outcome) {
+  const std::lock_guard lock(database_->mutex);
+  LedgerStatement(*database_,
+                  "UPDATE runs SET ended = strftime('%Y-%m-%dT%H:%M:%SZ', 'now'), outcome = ? "
+                  "WHERE id = ?")
+      .text(outcome)
+      .number(run)
+      .step();
+}
+
+std::optional<LedgerItem> Ledger::find(std::string_view target) const {
+  const std::lock_guard lock(database_->mutex);
+  LedgerStatement row(*database_, std::string(kItemColumns) + "WHERE target = ?");
+  if (!row.bytes(target).step()) return std::nullopt;
+  return item_in(row);
+}
+
+void Ledger::put(const LedgerItem& item, const std::optional<LedgerMark>& mark) {
+  const std::lock_guard lock(database_->mutex);
+  LedgerTransaction transaction(*database_);
+  LedgerStatement(*database_,
+                  "INSERT OR REPLACE INTO items (target, source, input_hash, task, key, status, "
+                  "output_hash, record, run, place) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
+      .bytes(item.target)
+      .bytes(item.source)
+      .text(item.input_hash)
+      .text(item.task)
+      .text(item.key)
+      .text(item.status)
+      .text(item.output_hash)
+      .text(item.record)
+      .number(item.run)
+      .number(static_cast<std::int64_t>(item.place))
+      .step();
+  if (mark) {
+    LedgerStatement(*database_,
+                    "INSERT OR IGNORE INTO marks (message_hex, recipient, mesh, out, scheme, "
+                    "options, key, input_hash, output_hash) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)")
+        .text(mark->message_hex)
+        .text(mark->recipient)
+        .bytes(mark->mesh)
+        .bytes(mark->out)
+        .text(mark->scheme)
+        .text(mark->options)
+        .text(mark->key)
+        .text(mark->input_hash)
+        .text(mark->output_hash)
+        .step();
+  }
+  transaction.commit();
+}
+
+void Ledger::keep(std::string_view target, std::int64_t run, std::uint64_t place) {
+  const std::lock_guard lock(database_->mutex);
+  LedgerStatement(*database_, "UPDATE items SET run = ?, place = ? WHERE target = ?")
+      .number(run)
+      .number(static_cast<std::int64_t>(place))
+      .bytes(target)
+      .step();
+}
+
+std::optional<LedgerMark> Ledger::mark_of(std::string_view output_hash) const {
+  const std::lock_guard lock(database_->mutex);
+  LedgerStatement row(*database_,
+                      std::string(kMarkColumns) + "WHERE output_hash = ? ORDER BY number LIMIT 1");
+  if (!row.text(output_hash).step()) return std::nullopt;
+  return mark_in(row);
+}
+
+void Ledger::for_each_item(const std::function<void(const LedgerItem&)>& visit) const {
+  const std::lock_guard lock(database_->mutex);
+  LedgerStatement row(*database_, std::string(kItemColumns) + "ORDER BY target");
+  while (row.step()) visit(item_in(row));
+}
+
+void Ledger::for_each_item_of(std::int64_t run,
+                              const std::function<void(const LedgerItem&)>& visit) const {
+  const std::lock_guard lock(database_->mutex);
+  LedgerStatement row(*database_, std::string(kItemColumns) + "WHERE run = ? ORDER BY place");
+  row.number(run);
+  while (row.step()) visit(item_in(row));
+}
+
+void Ledger::for_each_mark(const std::function<void(const LedgerMark&)>& visit) const {
+  const std::lock_guard lock(database_->mutex);
+  LedgerStatement row(*database_, std::string(kMarkColumns) + "ORDER BY number");
+  while (row.step()) visit(mark_in(row));
+}
+
+void Ledger::for_each_run(const std::function<void(const LedgerRun&)>& visit) const {
+  const std::lock_guard lock(database_->mutex);
+  LedgerStatement row(*database_,
+                      "SELECT id, verb, command, directory, version, started, ended, outcome "
+                      "FROM runs ORDER BY id");
+  while (row.step()) {
+    visit({row.number_at(0), row.text_at(1), row.text_at(2), row.text_at(3), row.text_at(4),
+           row.text_at(5), row.text_at(6), row.text_at(7)});
+  }
+}
+
+bool is_ledger_file(const fs::path& path) {
+  constexpr std::string_view kMagic("SQLite format 3\0", 16);
+  std::ifstream stream(path, std::ios::binary);
+  std::string start(kMagic.size(), '\0');
+  stream.read(start.data(), static_cast<std::streamsize>(start.size()));
+  return stream.gcount() == static_cast<std::streamsize>(kMagic.size()) && start == kMagic;
+}
+
+}  // namespace triglyph

@@ -1,0 +1,106 @@
+// The memory of an owner: one SQLite file that knows every run, the state of every output, and
+// every mark that was ever issued.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace triglyph {
+
+// A run as the ledger remembers it. Times are UTC, as "2026-03-01T12:00:00Z".
+struct LedgerRun {
+  std::int64_t id = 0;
+  std::string verb;
+  std::string command;    // the arguments, as a shell would take them
+  std::string directory;  // where the run stood
+  std::string version;    // of triglyph
+  std::string started;
+  std::string ended;    // empty: the run was killed, or is under way
+  std::string outcome;  // "done", "some failed", "interrupted", ..
+};
+
+// The state of one output. Names are those of Job, made absolute, byte for byte.
+struct LedgerItem {
+  std::string target;  // the output, which identifies the item
+  std::string source;  // the mesh
+  std::string input_hash;
+  std::string task;  // hash of the request: payload, scheme and options
+  std::string key;   // fingerprint
+  std::string status;
+  std::string output_hash;  // empty: there is no output
+  std::string record;       // one line of JSON; see record.h
+  std::int64_t run = 0;     // that made the item or last found it done
+  std::uint64_t place = 0;  // in that run, from 0
+};
+
+// A mark that was issued. Never changed and never deleted.
+struct LedgerMark {
+  std::int64_t number = 0;  // assigned by the ledger, from 1
+  std::string message_hex;  // empty: fill
+  std::string recipient;    // empty: none
+  std::string mesh;         // absolute
+  std::string out;          // absolute
+  std::string scheme;
+  std::string options;  // JSON object
+  std::string key;      // fingerprint
+  std::string input_hash;
+  std::string output_hash;
+  std::string issued;  // UTC
+};
+
+class Ledger {
+ public:
+  // Opens the ledger, or creates it with mode 0600. Several processes may have it open: writers
+  // wait for each other. Throws Error Malformed for a file that is no ledger or of a newer schema,
+  // and Unwritable.
+  explicit Ledger(const std::filesystem::path& path);
+  ~Ledger();
+  Ledger(const Ledger&) = delete;
+  Ledger& operator=(const Ledger&) = delete;
+
+  // All members may be called from any thread, and throw Error Unwritable if the ledger cannot be
+  // read or written. What returned is there after the process was killed; a power failure may take
+  // the last moments.
+
+  // Returns the number of the new run. `run.id`, `started` and what follows are ignored.
+  [[nodiscard]] std::int64_t begin_run(const LedgerRun& run);
+  void end_run(std::int64_t run, std::string_view outcome);
+
+  [[nodiscard]] std::optional<LedgerItem> find(std::string_view target) const;
+
+  // Inserts or replaces the item, and issues the mark unless one with the same input, output, key
+  // and name was issued before; in one transaction.
+  void put(const LedgerItem& item, const std::optional<LedgerMark>& mark);
+
+  // Says that the run found the item done.
+  void keep(std::string_view target, std::int64_t run, std::uint64_t place);
+
+  // Returns the mark that was issued with this content, if any.
+  [[nodiscard]] std::optional<LedgerMark> mark_of(std::string_view output_hash) const;
+
+  // Call the function for every item, ascending by name of the output, or for those of a run,
+  // ascending by place; for every mark or run, ascending by number.
+  void for_each_item(const std::function<void(const LedgerItem&)>& visit) const;
+  void for_each_item_of(std::int64_t run,
+                        const std::function<void(const LedgerItem&)>& visit) const;
+  void for_each_mark(const std::function<void(const LedgerMark&)>& visit) const;
+  void for_each_run(const std::function<void(const LedgerRun&)>& visit) const;
+
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  struct Database;
+
+  std::filesystem::path path_;
+  std::unique_ptr<Database> database_;
+};
+
+// Returns whether the file begins as a SQLite database does.
+[[nodiscard]] bool is_ledger_file(const std::filesystem::path& path);
+
+}  // namespace triglyph

@@ -1,0 +1,128 @@
+#include "manifests/records_file.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "engine/base/output_file.h"
+#include "manifests/json_line.h"
+
+namespace triglyph {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Throws Error Usage unless the file is absent, empty or begins with a record.
+void check_holds_records(const fs::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  std::string line;
+  try {
+    if (!stream || !read_line(stream, line)) return;
+    (void)parse_record(line);
+  } catch (const Error&) {
+    throw Error(ErrorCode::Usage, path, "",
+                "holds something other than records, which would be lost; name another file");
+  }
+}
+
+// A line of the file.
+struct Place {
+  std::uint64_t place = 0;
+  std::uint64_t begin = 0;
+  std::uint64_t size = 0;  // without the newline
+};
+
+[[noreturn]] void fail_to_write(const fs::path& path) {
+  throw Error(ErrorCode::Unwritable, path, "",
+              "the record cannot be written: " + system_reason(errno == 0 ? EIO : errno));
+}
+
+// Returns the lines ascending by place, the last one of each place.
+std::vector<Place> sorted_lines(std::istream& stream) {
+  std::vector<Place> lines;
+  std::string line;
+  std::uint64_t begin = 0;
+  while (read_line(stream, line)) {
+    lines.push_back({parse_record(line).index, begin, line.size()});
+    begin += line.size() + 1;
+  }
+  const auto by_place = [](const Place& a, const Place& b) { return a.place < b.place; };
+  std::stable_sort(lines.begin(), lines.end(), by_place);
+  std::vector<Place> last;
+  for (const Place& one : lines) {
+    if (!last.empty() && last.back().place == one.place) last.pop_back();
+    last.push_back(one);
+  }
+  return last;
+}
+
+}  // namespace
+
+RecordsFile::RecordsFile(const fs::path& path, bool append) : path_(path) {
+  std::error_code ignored;
+  if (fs::is_regular_file(path, ignored)) check_holds_records(path);
+  errno = 0;
+  stream_.open(path, std::ios::binary | (append ? std::ios::app : std::ios::trunc));
+  if (!stream_) throw Error(ErrorCode::Unwritable, path, "", system_reason(errno));
+}
+
+void RecordsFile::write(const Record& record) {
+  errno = 0;
+  stream_ << to_line(to_json(record)) << std::flush;
+  if (!stream_) fail_to_write(path_);
+}
+
+void RecordsFile::finish() {
+  errno = 0;
+  stream_.close();
+  if (!stream_) fail_to_write(path_);
+  std::error_code ignored;
+  if (!fs::is_regular_file(path_, ignored)) return;
+  std::ifstream stream(path_, std::ios::binary);
+  const std::vector<Place> lines = sorted_lines(stream);
+  std::uint64_t end = 0;  // of the lines so far, if they lie as they should
+  for (const Place& line : lines) end = line.begin == end ? end + line.size + 1 : ~std::uint64_t{0};
+  if (end == fs::file_size(path_, ignored)) return;
+  OutputFile sorted(path_);
+  std::string text;
+  stream.clear();
+  for (const Place& line : lines) {
+    text.resize(line.size);
+    stream.seekg(static_cast<std::streamoff>(line.begin));
+    if (!stream.read(text.data(), static_cast<std::streamsize>(line.size))) fail_to_write(path_);
+    text += '\n';
+    sorted.write(text);
+  }
+  sorted.commit();
+}
+
+std::function<std::optional<Record>()> open_records(const fs::path& path) {
+  struct Source {
+    std::ifstream stream;
+    std::size_t number = 0;
+  };
+  auto source = std::make_shared<Source>();
+  source->stream.open(path, std::ios::binary);
+  if (fs::is_directory(path) || !source->stream) {
+    throw Error(ErrorCode::Unreadable, path, "", "the records cannot be read");
+  }
+  if (source->stream.peek() == std::ifstream::traits_type::eof()) {
+    throw Error(ErrorCode::Malformed, path, "", "holds no records");
+  }
+  return [source, path]() -> std::optional<Record> {
+    std::string line;
+    ++source->number;
+    try {
+      if (!read_line(source->stream, line)) return std::nullopt;
+      return parse_record(line);
+    } catch (const Error& error) {
+      throw Error(error.code(), path, at_line(source->number), error.message());
+    }
+  };
+}
+
+}  // namespace triglyph

@@ -1,0 +1,136 @@
+#include "manifests/resume.h"
+
+#include <algorithm>
+#include <array>
+
+#include "engine/base/error.h"
+#include "engine/io/mapped_file.h"
+#include "manifests/json_line.h"
+
+namespace triglyph {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Returns the hash of the file's content, or nothing if it cannot be read.
+std::optional<std::string> hash_of_file(const fs::path& path) {
+  try {
+    return content_hash(MappedFile::open(path).bytes());
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+// Returns whether the same input, request and key always end so, without an output.
+bool is_final_refusal(FileStatus status) {
+  constexpr std::array kFinal = {
+      FileStatus::TooSmall,      FileStatus::TooCoarse,   FileStatus::TooVisible,
+      FileStatus::AlreadyMarked, FileStatus::NotVerified, FileStatus::Malformed,
+      FileStatus::Unsupported,   FileStatus::Crashed,     FileStatus::TooSlow};
+  return std::find(kFinal.begin(), kFinal.end(), status) != kFinal.end();
+}
+
+std::string options_text(const MarkOptions& options) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  for (const auto& [key, value] : values_of(options)) json[key] = to_json(value);
+  return json.dump();
+}
+
+}  // namespace
+
+std::string canonical_name(const fs::path& path) {
+  std::error_code error;
+  const fs::path absolute = fs::absolute(path, error);
+  const fs::path directory = fs::weakly_canonical(absolute.parent_path(), error);
+  return (directory / absolute.filename()).lexically_normal().string();
+}
+
+std::string task_hash(const MarkRequest& request) {
+  const std::string payload = request.is_fill() ? "fill" : to_hex(request.message());
+  const std::string text = payload + " " + options_text(request.options);
+  return content_hash(text);
+}
+
+Resume::Resume(Ledger& ledger, std::int64_t run, const Key& key, const ResumeOptions& options)
+    : ledger_(ledger), run_(run), key_(key.fingerprint()), options_(options) {}
+
+Decision Resume::decide(const Job& job) const {
+  const std::optional<LedgerItem> known = ledger_.find(canonical_name(job.out));
+  const bool is_of_this_run = known && known->run == run_;
+  if (options_.force && !is_of_this_run) return Decision::mark("--force");
+  std::error_code ignored;
+  if (!known) {
+    if (!options_.no_clobber || !fs::exists(job.out, ignored)) return Decision::mark();
+    return Decision::refuse(FileStatus::Exists, job.out.string() +
+                                                    " exists, and the ledger does not know it; "
+                                                    "without --no-clobber it is replaced");
+  }
+  const bool has_output = known->status == name_of(FileStatus::Marked);
+  if (known->source != canonical_name(job.mesh)) {
+    if (!has_output || !fs::exists(job.out, ignored)) return Decision::mark("another mesh");
+    return Decision::refuse(FileStatus::Exists, job.out.string() + " was made from " +
+                                                    known->source + "; --force replaces it");
+  }
+  if (known->task != task_hash(job.request)) return Decision::mark("other options");
+  if (known->key != key_) return Decision::mark("another key");
+  const std::optional<FileStatus> status = file_status(known->status);
+  if (!status || !(has_output || is_final_refusal(*status))) {
+    return Decision::mark("it ended as " + known->status);
+  }
+  // a mesh that crashed may have no hash
+  if (!known->input_hash.empty() && hash_of_file(job.mesh) != known->input_hash) {
+    return Decision::mark("the mesh changed");
+  }
+  if (has_output && hash_of_file(job.out) != known->output_hash) {
+    return Decision::mark("the output is gone or changed");
+  }
+  Decision decision;
+  try {
+    decision.record = parse_record(known->record);
+  } catch (const Error&) {
+    return Decision::mark("its record cannot be read");
+  }
+  decision.kind = Decision::Kind::Keep;
+  decision.is_of_this_run = is_of_this_run;
+  decision.record->index = job.index;
+  decision.record->file.mesh = job.mesh;
+  decision.record->file.out = job.out;
+  decision.record->is_kept = !is_of_this_run;
+  decision.record->is_repeated = is_of_this_run;
+  return decision;
+}
+
+void Resume::enter(const Record& record) const {
+  const MarkedFile& file = record.file;
+  LedgerItem item;
+  item.target = canonical_name(file.out);
+  item.source = canonical_name(file.mesh);
+  item.input_hash = file.input_hash;
+  item.task = record.task;
+  item.key = key_;
+  item.status = name_of(file.status);
+  item.output_hash = file.output_hash;
+  item.record = to_line(to_json(record));
+  item.record.pop_back();
+  item.run = run_;
+  item.place = record.index;
+  std::optional<LedgerMark> mark;
+  if (file.is_marked()) {
+    mark.emplace();
+    if (!file.request.is_fill()) mark->message_hex = to_hex(file.request.message());
+    mark->mesh = item.source;
+    mark->out = item.target;
+    mark->scheme = file.request.options.scheme;
+    mark->options = options_text(file.request.options);
+    mark->key = key_;
+    mark->input_hash = file.input_hash;
+    mark->output_hash = file.output_hash;
+  }
+  ledger_.put(item, mark);
+}
+
+void Resume::keep(const Job& job) const {
+  ledger_.keep(canonical_name(job.out), run_, job.index);
+}
+
+}  // namespace triglyph
