@@ -8,10 +8,10 @@
 #include "cli/run_arguments.h"
 #include "cli/screen.h"
 #include "cli/verbs.h"
+#include "manifests/file_runs.h"
 #include "manifests/inputs.h"
 #include "manifests/json_line.h"
 #include "manifests/records_file.h"
-#include "manifests/run.h"
 
 namespace triglyph {
 namespace {
@@ -89,12 +89,12 @@ void print_result(const ReadResult& result, std::span<const Key> keys, bool json
          : print_text(result.path, *result.reading, keys);
     return;
   }
-  std::cerr << "triglyph: " << printable(result.error) << "\n";
+  std::cerr << "triglyph: " << printable(result.failure->error) << "\n";
   if (!json) return;
   nlohmann::ordered_json line;
   put_path(line, "mesh", result.path);
-  line["status"] = name_of(*result.status);
-  line["error"] = result.error;
+  line["status"] = name_of(result.failure->status);
+  line["error"] = result.failure->error;
   std::cout << to_line(line);
 }
 
@@ -103,7 +103,8 @@ void report_result(const ReadResult& result, std::span<const Key> keys, bool jso
                    RunTally& tally) {
   print_result(result, keys, json);
   check_standard_output();  // nobody is there to read the rest
-  const std::size_t kind = !result.reading ? kFailedFirst + static_cast<std::size_t>(*result.status)
+  const std::size_t kind = !result.reading
+                               ? kFailedFirst + static_cast<std::size_t>(result.failure->status)
                            : result.reading->mark ? kCarries
                                                   : kCarriesNone;
   tally.count(kind, !result.reading, false, result.path);
@@ -112,7 +113,7 @@ void report_result(const ReadResult& result, std::span<const Key> keys, bool jso
 // Returns the distinct encodings of the marks in a file of records.
 std::vector<Encoding> encodings_in(const std::filesystem::path& records) {
   std::vector<Encoding> encodings;
-  const auto next = open_records(records);
+  const auto next = record_source(records);
   while (const std::optional<Record> record = next()) {
     if (!record->file.is_marked() || record->file.request.is_fill()) continue;
     Encoding encoding = record->file.encoding();

@@ -133,14 +133,15 @@ class MarkReport {
   }
 
   void completed(const Record& record) {
-    if (records_ && !record.is_repeated) records_->write(record);
+    if (records_) records_->write(record);
   }
 
   void delivered(const Record& record) {
     const bool failed = !record.file.is_marked();
     bar_.clear();
-    if (arguments_.json) std::cout << to_line(to_json(record)) << std::flush;
+    if (arguments_.json) std::cout << to_line(to_json(record));
     if (has_table_) print_table_row(std::cout, record);
+    std::cout.flush();  // what is delivered must outlive this worker
     if (!record.file.error.empty()) {
       std::cerr << "triglyph: " << printable(record.file.error) << "\n";
     }

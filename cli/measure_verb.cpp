@@ -6,23 +6,25 @@
 
 #include "cli/app.h"
 #include "cli/options.h"
+#include "cli/run_arguments.h"
+#include "cli/screen.h"
 #include "cli/verbs.h"
-#include "engine/base/parallel.h"
 #include "engine/geometry/box.h"
 #include "engine/io/mesh_file.h"
 #include "engine/metric/comparison.h"
+#include "manifests/file_runs.h"
 #include "manifests/json_line.h"
+#include "manifests/ledger.h"
 
 namespace triglyph {
 namespace {
 
 struct MeasureArguments {
-  std::filesystem::path original;
-  std::filesystem::path marked;
+  std::vector<std::string> inputs;
   std::vector<std::string> metrics;
   double tolerance = kHausdorffTolerance;
   bool json = false;
-  MachineArguments machine;
+  RunArguments run;
 
   [[nodiscard]] bool wants_all() const {
     return std::find(metrics.begin(), metrics.end(), "all") != metrics.end();
@@ -40,30 +42,71 @@ std::vector<std::string> chosen_metrics(const MeasureArguments& arguments, bool 
   return chosen;
 }
 
-int run_measure(const MeasureArguments& arguments) {
+nlohmann::ordered_json measured(const MeasureArguments& arguments, const MeshPair& pair) {
+  const MeshFile original = MeshFile::open(pair.original);
+  const MeshFile marked = MeshFile::open(pair.marked);
+  const Mesh& first = original.mesh();
+  const Mesh& second = marked.mesh();
+  const bool same = have_same_triangles(first, second);
   nlohmann::ordered_json json;
-  with_threads(arguments.machine.threads(), [&] {
-    const MeshFile original = MeshFile::open(arguments.original);
-    const MeshFile marked = MeshFile::open(arguments.marked);
-    const Mesh& first = original.mesh();
-    const Mesh& second = marked.mesh();
-    const bool same = have_same_triangles(first, second);
-    json = {{"original", arguments.original.string()},
-            {"marked", arguments.marked.string()},
-            {"same_triangles", same},
-            {"diagonal", box_diagonal(first.positions)}};
-    for (const std::string& metric : chosen_metrics(arguments, same)) {
-      for (const auto& [name, value] : compare(first, second, metric, arguments.tolerance)) {
-        json[name] = value;
-      }
+  put_path(json, "original", pair.original);
+  put_path(json, "marked", pair.marked);
+  json["same_triangles"] = same;
+  json["diagonal"] = box_diagonal(first.positions);
+  for (const std::string& metric : chosen_metrics(arguments, same)) {
+    for (const auto& [name, value] : compare(first, second, metric, arguments.tolerance)) {
+      json[name] = value;
     }
-  });
-  if (arguments.json) {
-    std::cout << to_line(json);
-  } else {
-    for (const auto& [name, value] : json.items()) std::cout << name << " " << value << "\n";
   }
-  return kDone;
+  return json;
+}
+
+void print_measured(const PairResult& result, bool json, bool is_first) {
+  if (result.failure) {
+    std::cerr << "triglyph: " << printable(result.failure->error) << "\n";
+    if (!json) return;
+    nlohmann::ordered_json line;
+    put_path(line, "original", result.pair.original);
+    put_path(line, "marked", result.pair.marked);
+    line["status"] = name_of(result.failure->status);
+    line["error"] = result.failure->error;
+    std::cout << to_line(line);
+  } else if (json) {
+    std::cout << to_line(result.values);
+  } else {
+    if (!is_first) std::cout << "\n";
+    for (const auto& [name, value] : result.values.items()) {
+      std::cout << name << " "
+                << value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
+    }
+  }
+  std::cout.flush();
+  check_standard_output();  // nobody is there to read the rest
+}
+
+int run_measure(const MeasureArguments& arguments) {
+  const bool is_run = name_many_pairs(arguments.inputs);
+  (void)pairs_of(arguments.inputs);  // a mistake is to be known before the run
+  return arguments.run.supervised([&](const WorkOrder& order) {
+    std::optional<Ledger> ledger;
+    if (!arguments.run.ledger().empty()) ledger.emplace(arguments.run.ledger());
+    const LoggedRun run(ledger ? &*ledger : nullptr, order, "measure");
+    RunTally tally(arguments.run, order, 0, {"measured", "failed"});
+    measure_pairs(
+        pairs_of(arguments.inputs), [&](const MeshPair& pair) { return measured(arguments, pair); },
+        arguments.run.context(order),
+        [&](const PairResult& result) {
+          print_measured(result, arguments.json, tally.counted(0) == 0);
+          const bool failed = result.failure.has_value();
+          tally.count(failed ? 1 : 0, failed, false, result.pair.original);
+        },
+        order.board->stop());
+    if (order.only) return kDone;
+    int code = is_run ? tally.finish("pairs") : tally.code();
+    if (!is_run && code == kSomeFailed) code = kUsageError;  // a mistake of the command
+    run.end(code);
+    return code;
+  });
 }
 
 }  // namespace
@@ -72,10 +115,12 @@ void add_measure_verb(CLI::App& app, Action& action) {
   CLI::App* verb =
       app.add_subcommand("measure", "Measure distances between two meshes, in model units");
   auto arguments = std::make_shared<MeasureArguments>();
-  verb->add_option("original", arguments->original, "Original mesh")->required()->type_name("MESH");
-  verb->add_option("marked", arguments->marked, "Mesh to compare with the original")
+  verb->add_option("inputs", arguments->inputs,
+                   "The original and the mesh to compare with it; two folders, in which meshes at "
+                   "the same place belong together; or records or a ledger, for every mesh marked")
       ->required()
-      ->type_name("MESH");
+      ->expected(1, 2)
+      ->type_name("MESH MESH|DIR DIR|RECORDS");
   std::vector<std::string> names = strings(metric_names());
   names.emplace_back("all");
   verb->add_option("--metric", arguments->metrics,
@@ -90,10 +135,12 @@ void add_measure_verb(CLI::App& app, Action& action) {
       ->check(CLI::Range(1e-12, 1.0).description(""))
       ->type_name("N");
   verb->add_flag("--json", arguments->json, "Print one JSON object");
-  arguments->machine.add_threads_to(*verb);
+  arguments->run.add_to(*verb);
   verb->footer(
       "Compare a marked mesh with its original by every metric:\n"
-      "  triglyph measure a.obj marked/a.obj --metric all");
+      "  triglyph measure a.obj marked/a.obj --metric all\n"
+      "Compare every mesh of a run with its original:\n"
+      "  triglyph measure run.jsonl --json");
   verb->callback(
       [&action, arguments] { action = [arguments] { return run_measure(*arguments); }; });
 }

@@ -106,6 +106,7 @@ int RunArguments::supervised(const std::function<int(const WorkOrder&)>& work) c
         std::signal(SIGPIPE, SIG_IGN);  // what cannot be written is an error of its own
         int result = kFatal;
         with_threads(machine_.threads(), [&] { result = work(order); });
+        check_standard_output();
         return result;
       },
       timeout_);
@@ -163,8 +164,12 @@ int RunTally::finish(std::string_view noun) {
   if (board_.gave_up()) {
     std::cerr << "triglyph: given up after " << failed()
               << " failures; the same command goes on from here\n";
-    return kSomeFailed;
   }
+  return code();
+}
+
+int RunTally::code() const {
+  if (board_.gave_up()) return kSomeFailed;
   if (board_.stop()) return kInterrupted;
   return failed() > 0 ? kSomeFailed : kDone;
 }

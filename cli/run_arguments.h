@@ -13,7 +13,8 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/options.h"
-#include "manifests/run.h"
+#include "manifests/ledger.h"
+#include "manifests/run_context.h"
 
 namespace triglyph {
 
@@ -64,9 +65,12 @@ class RunTally {
 
   void count(std::size_t kind, bool failed, bool kept, const std::filesystem::path& input);
 
-  // Prints the line unless the run is quiet. Returns the exit code: that of an interrupt, of a run
-  // that was given up or had failures, or kDone.
+  // Prints the line unless the run is quiet, and returns the exit code.
   [[nodiscard]] int finish(std::string_view noun);
+
+  // Returns the exit code: that of an interrupt, of a run that was given up or had failures, or
+  // kDone.
+  [[nodiscard]] int code() const;
 
   [[nodiscard]] std::uint64_t failed() const;
   [[nodiscard]] std::uint64_t counted(std::size_t kind) const;

@@ -16,11 +16,13 @@ using Action = std::function<int()>;
 [[nodiscard]] std::unique_ptr<CLI::App> make_app(Action& action);
 
 void add_keygen_verb(CLI::App& app, Action& action);
+void add_ledger_verb(CLI::App& app, Action& action);
 void add_mark_verb(CLI::App& app, Action& action);
 void add_extract_verb(CLI::App& app, Action& action);
 void add_verify_verb(CLI::App& app, Action& action);
 void add_measure_verb(CLI::App& app, Action& action);
 void add_render_verb(CLI::App& app, Action& action);
 void add_sample_verb(CLI::App& app, Action& action);
+void add_ledger_verb(CLI::App& app, Action& action);
 
 }  // namespace triglyph

@@ -8,10 +8,11 @@
 #include "cli/screen.h"
 #include "cli/verbs.h"
 #include "engine/base/error.h"
+#include "manifests/file_runs.h"
 #include "manifests/inputs.h"
 #include "manifests/json_line.h"
 #include "manifests/records_file.h"
-#include "manifests/run.h"
+#include "manifests/resume.h"
 
 namespace triglyph {
 namespace {
@@ -30,20 +31,7 @@ struct VerifyArguments {
 // Returns the records of all files of records and ledgers, one after another.
 RecordSource records_in(std::span<const std::string> inputs) {
   auto sources = std::make_shared<std::deque<RecordSource>>();
-  for (const std::string& input : inputs) {
-    if (!is_ledger_file(input)) {
-      sources->push_back(open_records(input));
-      continue;
-    }
-    auto records = std::make_shared<std::deque<std::string>>();
-    Ledger(input).for_each_item([&](const LedgerItem& item) { records->push_back(item.record); });
-    sources->push_back([records]() -> std::optional<Record> {
-      if (records->empty()) return std::nullopt;
-      Record record = parse_record(records->front());
-      records->pop_front();
-      return record;
-    });
-  }
+  for (const std::string& input : inputs) sources->push_back(record_source(input));
   return [sources]() -> std::optional<Record> {
     while (!sources->empty()) {
       if (std::optional<Record> record = sources->front()()) return record;
@@ -69,14 +57,10 @@ RecordSource records_of(const std::vector<fs::path>& files, const fs::path& ledg
   };
 }
 
-// Returns the file of a record: where the run stood, or below --root; else as it is named.
+// Returns the file of a record: below --root, else where the run stood.
 fs::path file_of(const Record& record, const fs::path& root) {
   const fs::path& out = record.file.out;
-  if (out.is_absolute()) return out;
-  if (!root.empty()) return root / out;
-  std::error_code ignored;
-  const fs::path there = fs::path(record.directory) / out;
-  return !record.directory.empty() && fs::exists(there, ignored) ? there : out;
+  return root.empty() || out.is_absolute() ? resolved(out, record) : root / out;
 }
 
 // Returns ascending numbers as ranges: "3-17 20 22-24".

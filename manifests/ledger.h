@@ -15,13 +15,13 @@ namespace triglyph {
 // A run as the ledger remembers it. Times are UTC, as "2026-03-01T12:00:00Z".
 struct LedgerRun {
   std::int64_t id = 0;
-  std::string verb;
-  std::string command;    // the arguments, as a shell would take them
-  std::string directory;  // where the run stood
-  std::string version;    // of triglyph
-  std::string started;
-  std::string ended;    // empty: the run was killed, or is under way
-  std::string outcome;  // "done", "some failed", "interrupted", ..
+  std::string verb = {};
+  std::string command = {};    // the arguments, as a shell would take them
+  std::string directory = {};  // where the run stood
+  std::string version = {};    // of triglyph
+  std::string started = {};
+  std::string ended = {};    // empty: the run was killed, or is under way
+  std::string outcome = {};  // "done", "some failed", "interrupted", ..
 };
 
 // The state of one output. Names are those of Job, made absolute, byte for byte.

@@ -24,7 +24,6 @@ struct Record {
   std::string directory = {};         // where the run stood, to which relative names refer
   std::string task = {};              // see task_hash(); not written
   bool is_kept = false;               // an earlier run did it; not written
-  bool is_repeated = false;           // an earlier worker of the run reported it; not written
 };
 
 // Returns the record as JSON of the current schema.

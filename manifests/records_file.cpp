@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "engine/base/error.h"
 #include "engine/base/output_file.h"
 #include "manifests/json_line.h"
+#include "manifests/ledger.h"
 
 namespace triglyph {
 namespace {
@@ -60,6 +62,42 @@ std::vector<Place> sorted_lines(std::istream& stream) {
   return last;
 }
 
+std::function<std::optional<Record>()> lines_of_records(const fs::path& path) {
+  struct Source {
+    std::ifstream stream;
+    std::size_t number = 0;
+  };
+  auto source = std::make_shared<Source>();
+  source->stream.open(path, std::ios::binary);
+  if (fs::is_directory(path) || !source->stream) {
+    throw Error(ErrorCode::Unreadable, path, "", "the records cannot be read");
+  }
+  if (source->stream.peek() == std::ifstream::traits_type::eof()) {
+    throw Error(ErrorCode::Malformed, path, "", "holds no records");
+  }
+  return [source, path]() -> std::optional<Record> {
+    std::string line;
+    ++source->number;
+    try {
+      if (!read_line(source->stream, line)) return std::nullopt;
+      return parse_record(line);
+    } catch (const Error& error) {
+      throw Error(error.code(), path, at_line(source->number), error.message());
+    }
+  };
+}
+
+std::function<std::optional<Record>()> items_of_ledger(const fs::path& path) {
+  auto records = std::make_shared<std::deque<std::string>>();
+  Ledger(path).for_each_item([&](const LedgerItem& item) { records->push_back(item.record); });
+  return [records]() -> std::optional<Record> {
+    if (records->empty()) return std::nullopt;
+    Record record = parse_record(records->front());
+    records->pop_front();
+    return record;
+  };
+}
+
 }  // namespace
 
 RecordsFile::RecordsFile(const fs::path& path, bool append) : path_(path) {
@@ -100,29 +138,15 @@ void RecordsFile::finish() {
   sorted.commit();
 }
 
-std::function<std::optional<Record>()> open_records(const fs::path& path) {
-  struct Source {
-    std::ifstream stream;
-    std::size_t number = 0;
-  };
-  auto source = std::make_shared<Source>();
-  source->stream.open(path, std::ios::binary);
-  if (fs::is_directory(path) || !source->stream) {
-    throw Error(ErrorCode::Unreadable, path, "", "the records cannot be read");
-  }
-  if (source->stream.peek() == std::ifstream::traits_type::eof()) {
-    throw Error(ErrorCode::Malformed, path, "", "holds no records");
-  }
-  return [source, path]() -> std::optional<Record> {
-    std::string line;
-    ++source->number;
-    try {
-      if (!read_line(source->stream, line)) return std::nullopt;
-      return parse_record(line);
-    } catch (const Error& error) {
-      throw Error(error.code(), path, at_line(source->number), error.message());
-    }
-  };
+std::function<std::optional<Record>()> record_source(const fs::path& path) {
+  return is_ledger_file(path) ? items_of_ledger(path) : lines_of_records(path);
+}
+
+fs::path resolved(const fs::path& name, const Record& record) {
+  if (name.is_absolute() || record.directory.empty()) return name;
+  std::error_code ignored;
+  fs::path there = fs::path(record.directory) / name;
+  return fs::exists(there, ignored) ? there : name;
 }
 
 }  // namespace triglyph

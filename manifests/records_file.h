@@ -20,7 +20,8 @@ class RecordsFile {
   // Writes the line at once, so that a run that is killed keeps it. Throws Error Unwritable.
   void write(const Record& record);
 
-  // Sorts the lines by their place in the run, and keeps the last one of each place. Replaces the
+  // Sorts the lines by their place in the run, and keeps the last one of each place: a worker that
+  // takes over from another writes what that one may not have come to write. Replaces the
   // file in one step; a pipe or device is left as it is. Takes 24 bytes of memory per record.
   // Throws Error Unwritable.
   void finish();
@@ -30,10 +31,15 @@ class RecordsFile {
   std::ofstream stream_;
 };
 
-// Returns a function that returns the records of a file one by one, and then nothing. Throws Error
-// Unreadable for a file that cannot be read, Malformed for one without a record; the function
-// throws Error Malformed naming file and line, and Unreadable.
-[[nodiscard]] std::function<std::optional<Record>()> open_records(
+// Returns a function that returns the records of a file, or of the items of a ledger, one by one,
+// and then nothing. Throws Error Unreadable for a file that cannot be read, Malformed for one
+// without a record; the function throws Error Malformed naming file and line, and Unreadable.
+[[nodiscard]] std::function<std::optional<Record>()> record_source(
     const std::filesystem::path& path);
+
+// Returns the name of a file of the record, which may be relative: from where the run stood if the
+// file is there, else unchanged.
+[[nodiscard]] std::filesystem::path resolved(const std::filesystem::path& name,
+                                             const Record& record);
 
 }  // namespace triglyph

@@ -51,6 +51,35 @@ std::string task_hash(const MarkRequest& request) {
   return content_hash(text);
 }
 
+void enter_record(Ledger& ledger, std::int64_t run, const Record& record) {
+  const MarkedFile& file = record.file;
+  LedgerItem item;
+  item.target = canonical_name(file.out);
+  item.source = canonical_name(file.mesh);
+  item.input_hash = file.input_hash;
+  item.task = record.task;
+  item.key = file.key_fingerprint;
+  item.status = name_of(file.status);
+  item.output_hash = file.output_hash;
+  item.record = to_line(to_json(record));
+  item.record.pop_back();
+  item.run = run;
+  item.place = record.index;
+  std::optional<LedgerMark> mark;
+  if (file.is_marked()) {
+    mark.emplace();
+    if (!file.request.is_fill()) mark->message_hex = to_hex(file.request.message());
+    mark->mesh = item.source;
+    mark->out = item.target;
+    mark->scheme = file.request.options.scheme;
+    mark->options = options_text(file.request.options);
+    mark->key = file.key_fingerprint;
+    mark->input_hash = file.input_hash;
+    mark->output_hash = file.output_hash;
+  }
+  ledger.put(item, mark);
+}
+
 Resume::Resume(Ledger& ledger, std::int64_t run, const Key& key, const ResumeOptions& options)
     : ledger_(ledger), run_(run), key_(key.fingerprint()), options_(options) {}
 
@@ -96,37 +125,11 @@ Decision Resume::decide(const Job& job) const {
   decision.record->file.mesh = job.mesh;
   decision.record->file.out = job.out;
   decision.record->is_kept = !is_of_this_run;
-  decision.record->is_repeated = is_of_this_run;
   return decision;
 }
 
 void Resume::enter(const Record& record) const {
-  const MarkedFile& file = record.file;
-  LedgerItem item;
-  item.target = canonical_name(file.out);
-  item.source = canonical_name(file.mesh);
-  item.input_hash = file.input_hash;
-  item.task = record.task;
-  item.key = key_;
-  item.status = name_of(file.status);
-  item.output_hash = file.output_hash;
-  item.record = to_line(to_json(record));
-  item.record.pop_back();
-  item.run = run_;
-  item.place = record.index;
-  std::optional<LedgerMark> mark;
-  if (file.is_marked()) {
-    mark.emplace();
-    if (!file.request.is_fill()) mark->message_hex = to_hex(file.request.message());
-    mark->mesh = item.source;
-    mark->out = item.target;
-    mark->scheme = file.request.options.scheme;
-    mark->options = options_text(file.request.options);
-    mark->key = key_;
-    mark->input_hash = file.input_hash;
-    mark->output_hash = file.output_hash;
-  }
-  ledger_.put(item, mark);
+  enter_record(ledger_, run_, record);
 }
 
 void Resume::keep(const Job& job) const {

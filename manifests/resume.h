@@ -60,6 +60,9 @@ class Resume {
   ResumeOptions options_;
 };
 
+// Enters a result into the ledger, as of this run.
+void enter_record(Ledger& ledger, std::int64_t run, const Record& record);
+
 // Returns the hash of a request: equal for equal payload, scheme and options. O(options).
 [[nodiscard]] std::string task_hash(const MarkRequest& request);
 

@@ -60,6 +60,8 @@ for verb in mark extract verify measure render sample keygen; do
   fi
 done
 
+[[ -s $prefix/share/man/man1/triglyph-ledger.1 ]] || fail "the ledger has no page"
+
 # bash completes verbs, options, choices and file names.
 completed() {
   (

@@ -6,6 +6,7 @@
 #include "engine/base/output_file.h"
 #include "engine/io/export_mesh.h"
 #include "engine/io/mesh_file.h"
+#include "engine/marking/verify_file.h"
 #include "engine/mesh/edge_length.h"
 #include "manifests/run.h"
 #include "tests/support/attacks.h"

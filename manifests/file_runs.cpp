@@ -1,0 +1,154 @@
+#include "manifests/file_runs.h"
+
+#include <new>
+
+#include "engine/base/error.h"
+#include "manifests/share.h"
+
+namespace triglyph {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A file to work on. Derived classes hold the result.
+struct FileItem : FlowItem {
+  fs::path file;
+  std::optional<FileFailure> failure;
+  bool is_done = false;
+};
+
+// Calls the work, and makes a failure of its exception.
+template <typename Work>
+void attempt(FileItem& item, const Work& work) {
+  const auto fail = [&](FileStatus status, const std::string& error) {
+    item.failure = {status, error};
+  };
+  try {
+    work();
+  } catch (const Error& error) {
+    fail(file_status(name_of(error.code())).value_or(FileStatus::Failed), error.what());
+  } catch (const std::bad_alloc&) {
+    fail(FileStatus::Failed, item.file.string() + ": not enough memory");
+  } catch (const std::exception& error) {
+    fail(FileStatus::Failed, item.file.string() + ": " + error.what());
+  }
+}
+
+// Runs `work` for every item of the source, and calls `deliver` for those that were done. `Item` is
+// derived from FileItem.
+template <typename Item, typename Source, typename Work, typename Deliver>
+void run_files(const Source& source, const Work& work, const Deliver& deliver,
+               const RunContext& context, const std::atomic<bool>& stop) {
+  const Share share(context);
+  std::size_t next = 0;
+  Flow flow;
+  flow.next = [&]() -> std::unique_ptr<FlowItem> {
+    std::unique_ptr<Item> item = source();
+    if (item == nullptr) return nullptr;
+    item->index = next++;
+    item->memory_estimate = memory_of(item->file, false);
+    return item;
+  };
+  flow.work = [&](FlowItem& any) {
+    auto& item = static_cast<Item&>(any);
+    if (stop || share.leaves_out(item.index)) return;
+    if (const Casualty* casualty = share.casualty(item.index)) {
+      item.failure = {status_of(*casualty), item.file.string() + ": " + casualty->reason};
+    } else {
+      const BoardEntry entry(context.order, item.index);
+      fail_if_asked(item.file);
+      attempt(item, [&] { work(item); });
+    }
+    item.is_done = !stop;  // what was interrupted has no result
+  };
+  flow.deliver = [&](FlowItem& any) {
+    auto& item = static_cast<Item&>(any);
+    if (!share.delivers() || !item.is_done) return;
+    deliver(item);
+    share.count_delivered(item.index);
+  };
+  run_flow(flow, flow_options(context), stop);
+}
+
+struct ReadItem final : FileItem {
+  std::optional<FileReading> reading;
+};
+
+struct VerifyItem final : FileItem {
+  Record record;
+  Verification verification;
+};
+
+struct PairItem final : FileItem {
+  PairResult result;
+};
+
+}  // namespace
+
+void read_files(std::span<const fs::path> files, std::span<const Encoding> encodings,
+                std::span<const Key> keys, const RunContext& context,
+                const std::function<void(const ReadResult&)>& on_result,
+                const std::atomic<bool>& stop) {
+  auto file = files.begin();
+  const auto source = [&]() -> std::unique_ptr<ReadItem> {
+    if (file == files.end()) return nullptr;
+    auto item = std::make_unique<ReadItem>();
+    item->file = *file++;
+    return item;
+  };
+  run_files<ReadItem>(
+      source, [&](ReadItem& item) { item.reading = read_file(item.file, encodings, keys); },
+      [&](ReadItem& item) {
+        on_result({item.file, std::move(item.reading), std::move(item.failure)});
+      },
+      context, stop);
+}
+
+void verify_files(const RecordSource& records, const Key& key, bool locate,
+                  const RunContext& context,
+                  const std::function<void(const Record&, const Verification&)>& on_verdict,
+                  const std::atomic<bool>& stop) {
+  const auto source = [&]() -> std::unique_ptr<VerifyItem> {
+    std::optional<Record> record = records();
+    if (!record) return nullptr;
+    auto item = std::make_unique<VerifyItem>();
+    item->record = std::move(*record);
+    item->file = item->record.file.out;
+    return item;
+  };
+  run_files<VerifyItem>(
+      source,
+      [&](VerifyItem& item) { item.verification = verify_file(item.record.file, key, locate); },
+      [&](VerifyItem& item) {
+        if (item.failure) {
+          item.verification.verdict = FileVerdict::Damaged;
+          item.verification.detail = item.failure->error;
+        }
+        on_verdict(item.record, item.verification);
+      },
+      context, stop);
+}
+
+void measure_pairs(const PairSource& pairs,
+                   const std::function<nlohmann::ordered_json(const MeshPair&)>& measure,
+                   const RunContext& context,
+                   const std::function<void(const PairResult&)>& on_result,
+                   const std::atomic<bool>& stop) {
+  const auto source = [&]() -> std::unique_ptr<PairItem> {
+    std::optional<MeshPair> pair = pairs();
+    if (!pair) return nullptr;
+    auto item = std::make_unique<PairItem>();
+    item->file = pair->original;
+    item->result.pair = std::move(*pair);
+    return item;
+  };
+  run_files<PairItem>(
+      source, [&](PairItem& item) { item.result.values = measure(item.result.pair); },
+      [&](PairItem& item) {
+        item.result.failure = std::move(item.failure);
+        on_result(item.result);
+      },
+      context, stop);
+}
+
+}  // namespace triglyph

@@ -1,0 +1,67 @@
+// Runs that change no file: many files are read, verified or compared in parallel, within a memory
+// budget, and results come in order.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/marking/read_file.h"
+#include "engine/marking/verify_file.h"
+#include "manifests/pairs.h"
+#include "manifests/record.h"
+#include "manifests/run_context.h"
+
+namespace triglyph {
+
+// Why a file has no result.
+struct FileFailure {
+  FileStatus status = FileStatus::Failed;
+  std::string error;  // one line naming file and place
+};
+
+// The result of reading one file: a reading or a failure.
+struct ReadResult {
+  std::filesystem::path path;
+  std::optional<FileReading> reading;
+  std::optional<FileFailure> failure;
+};
+
+// Reads every file under every encoding and key; see read_file(). Calls `on_result` in the order of
+// the files, one call at a time. An exception of `on_result` ends the run and is rethrown.
+void read_files(std::span<const std::filesystem::path> files, std::span<const Encoding> encodings,
+                std::span<const Key> keys, const RunContext& context,
+                const std::function<void(const ReadResult&)>& on_result,
+                const std::atomic<bool>& stop);
+
+// Returns the next record of a run, or nothing at the end.
+using RecordSource = std::function<std::optional<Record>()>;
+
+// Verifies the file of every record; see verify_file(). Calls `on_verdict` in the order of the
+// records, one call at a time. An exception of the source is rethrown after the verdicts before it.
+void verify_files(const RecordSource& records, const Key& key, bool locate,
+                  const RunContext& context,
+                  const std::function<void(const Record&, const Verification&)>& on_verdict,
+                  const std::atomic<bool>& stop);
+
+// The result of measuring a pair of meshes: values or a failure.
+struct PairResult {
+  MeshPair pair;
+  nlohmann::ordered_json values;
+  std::optional<FileFailure> failure;
+};
+
+// Calls `measure` for every pair, in parallel, and `on_result` in the order of the pairs, one call
+// at a time. An exception of `measure` becomes the failure of its pair.
+void measure_pairs(const PairSource& pairs,
+                   const std::function<nlohmann::ordered_json(const MeshPair&)>& measure,
+                   const RunContext& context,
+                   const std::function<void(const PairResult&)>& on_result,
+                   const std::atomic<bool>& stop);
+
+}  // namespace triglyph

@@ -1,0 +1,17 @@
+// What surrounds a run, whatever its verb.
+#pragma once
+
+#include "manifests/flow.h"
+#include "manifests/supervisor.h"
+
+namespace triglyph {
+
+class Resume;
+
+struct RunContext {
+  FlowOptions flow = {};
+  const Resume* resume = nullptr;    // of marking; null: everything is done, and nothing remembered
+  const WorkOrder* order = nullptr;  // null: the run is not supervised
+};
+
+}  // namespace triglyph
