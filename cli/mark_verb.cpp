@@ -25,6 +25,8 @@ struct MarkArguments {
   fs::path pictures;  // directory
   bool json = false;
   bool dry_run = false;
+  bool companions = false;
+  bool keep_times = false;
   ResumeOptions resume;
   KeyArgument key;
   RunArguments run;
@@ -235,6 +237,8 @@ int mark_share(const MarkArguments& arguments, const Jobs& jobs, const Key& key,
   const Resume resume(ledger, run.id(), key, arguments.resume);
   RunContext context = arguments.run.context(order);
   context.resume = &resume;
+  context.copies_companions = arguments.companions;
+  context.keeps_times = arguments.keep_times;
   const auto source = jobs.open();
   const std::atomic<bool>& stop = order.board->stop();
   if (order.only) {
@@ -282,6 +286,10 @@ void add_mark_verb(CLI::App& app, Action& action) {
                  "outputs made from other meshes");
   verb->add_flag("--no-clobber", arguments->resume.no_clobber,
                  "Keep existing files that the ledger does not know");
+  verb->add_flag("--companions", arguments->companions,
+                 "Copy the material libraries and textures that a mesh names beside its output");
+  verb->add_flag("--keep-times", arguments->keep_times,
+                 "Give each output the modification time of its mesh");
   verb->add_flag("--dry-run", arguments->dry_run, "Print what would be done, and do nothing");
   arguments->key.add_to(*verb);
   arguments->run.add_to(*verb);

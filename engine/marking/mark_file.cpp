@@ -218,9 +218,20 @@ void FileMarking::measure() noexcept {
   });
 }
 
-void FileMarking::publish() noexcept {
+void FileMarking::publish(bool keeps_time) noexcept {
   double seconds = 0;
-  run_stage(seconds, [&] { work_->output->commit(); });
+  run_stage(seconds, [&] {
+    const std::filesystem::path& output = work_->output->temporary_path();
+    // a file system without permissions or times is no reason to refuse
+    std::error_code ignored;
+    const auto status = std::filesystem::status(result_.mesh, ignored);
+    if (!ignored) std::filesystem::permissions(output, status.permissions(), ignored);
+    if (keeps_time) {
+      const auto time = std::filesystem::last_write_time(result_.mesh, ignored);
+      if (!ignored) std::filesystem::last_write_time(output, time, ignored);
+    }
+    work_->output->commit();
+  });
   result_.times.write += seconds;
   work_.reset();
 }

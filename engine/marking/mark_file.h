@@ -96,7 +96,9 @@ class FileMarking {
   void write() noexcept;
   void read_back(const Key& key) noexcept;  // from the file that was written
   void measure() noexcept;
-  void publish() noexcept;  // gives the output its name, and releases everything but the result
+  // Gives the output its name and the permissions of the mesh's file, on request also its
+  // modification time, and releases everything but the result.
+  void publish(bool keeps_time = false) noexcept;
 
   // Enters the hash of the mesh's file into the result, if the file can be read; load() does so
   // too.
