@@ -96,6 +96,7 @@ int run_measure(const MeasureArguments& arguments) {
         pairs_of(arguments.inputs), [&](const MeshPair& pair) { return measured(arguments, pair); },
         arguments.run.context(order),
         [&](const PairResult& result) {
+          tally.clear_bar();
           print_measured(result, arguments.json, tally.counted(0) == 0);
           const bool failed = result.failure.has_value();
           tally.count(failed ? 1 : 0, failed, false, result.pair.original);
