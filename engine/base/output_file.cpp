@@ -3,10 +3,15 @@
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
+#include <mutex>
+#include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "engine/base/error.h"
@@ -28,16 +33,79 @@ std::filesystem::path temporary_name(const std::filesystem::path& path) {
   return path.parent_path() / name;
 }
 
+// Returns whether temporary_name() may have made the name: ".<stem>.<pid>-<n>.part<extension>".
+bool is_temporary_name(const std::filesystem::path& name) {
+  std::string text = name.string();
+  constexpr std::string_view kPart = ".part";
+  if (!text.ends_with(kPart)) text = name.stem().string();
+  if (!text.starts_with('.') || !text.ends_with(kPart)) return false;
+  text.resize(text.size() - kPart.size());
+  const auto cut_number = [&text](char before) {
+    const std::size_t digits = text.find_last_not_of("0123456789") + 1;
+    if (digits == text.size() || digits < 2 || text[digits - 1] != before) return false;
+    text.resize(digits - 1);
+    return true;
+  };
+  return cut_number('-') && cut_number('.');
+}
+
+// Removes the temporary file of a process that is gone: nobody holds its lock.
+void remove_if_abandoned(const std::filesystem::path& path) {
+  // O_NONBLOCK: a pipe of such a name must not be waited for
+  const int file = open(path.c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  if (file < 0) return;
+  struct stat status {};
+  if (fstat(file, &status) == 0 && S_ISREG(status.st_mode) && flock(file, LOCK_EX | LOCK_NB) == 0) {
+    unlink(path.c_str());
+  }
+  close(file);
+}
+
+// Removes what killed processes left in the directory; once in the life of the process, since it
+// reads the whole directory. Failures are ignored: leftovers are in nobody's way.
+void remove_leftovers(const std::filesystem::path& directory) {
+  static std::mutex mutex;
+  static std::set<std::filesystem::path> known;
+  std::error_code error;
+  {
+    const std::lock_guard lock(mutex);
+    if (!known.insert(std::filesystem::absolute(directory, error)).second) return;
+  }
+  std::filesystem::directory_iterator it(directory, error);
+  for (; !error && it != std::filesystem::directory_iterator(); it.increment(error)) {
+    if (is_temporary_name(it->path().filename())) remove_if_abandoned(it->path());
+  }
+}
+
+// Creates the file and holds a lock on it while it is open. Returns its descriptor, or -1 and
+// errno.
+int create_locked(const std::filesystem::path& path) {
+  const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  // Where the file system has no locks, nobody gets one, and nothing is ever taken for a leftover.
+  if (file >= 0) flock(file, LOCK_EX);
+  return file;
+}
+
+// Returns whether another process removed the file between its creation and its lock.
+bool was_removed(const std::filesystem::path& path) {
+  struct stat status {};
+  return lstat(path.c_str(), &status) != 0 && errno == ENOENT;
+}
+
 }  // namespace
 
 OutputFile::OutputFile(const std::filesystem::path& path)
     : path_(path), temporary_(temporary_name(path)) {
-  if (path.has_parent_path()) {
-    std::error_code error;
-    std::filesystem::create_directories(path.parent_path(), error);
-    if (error) fail(error.value());
+  const std::filesystem::path directory = path.has_parent_path() ? path.parent_path() : ".";
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  if (error) fail(error.value());
+  remove_leftovers(directory);
+  descriptor_ = create_locked(temporary_);
+  while (descriptor_ >= 0 && was_removed(temporary_)) {
+    close(descriptor_);
+    descriptor_ = create_locked(temporary_);
   }
-  descriptor_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor_ < 0) fail(errno);
 }
 

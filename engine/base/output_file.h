@@ -1,5 +1,11 @@
 // Atomic file output: the bytes are written under a temporary name in the same directory, and the
 // file is renamed when it is complete.
+//
+// The order is: write, fdatasync of the file, rename. A file that has its name is therefore whole,
+// also after a power failure. The directory is not synchronised: that costs 1.2 to 1.5 ms a file,
+// 11 % of marking meshes of 2,000 triangles, and saves only that after a power failure the last
+// names are missing or still those of the former files. The ledger, which compares contents, then
+// has these made again.
 #pragma once
 
 #include <filesystem>
@@ -9,8 +15,13 @@ namespace triglyph {
 
 class OutputFile {
  public:
-  // Creates missing directories and the temporary file ".<stem>.<unique>.part<extension>", which
-  // keeps the extension so that readers recognise the format. Throws Error Unwritable.
+  // Creates missing directories and the temporary file ".<stem>.<pid>-<n>.part<extension>", which
+  // keeps the extension so that readers recognise the format, and stays locked (flock) while it is
+  // written. Before the first one that a process makes in a directory, removes files there whose
+  // names have this form and that nobody has locked: processes that were killed left them. Throws
+  // Error Unwritable.
+  // note: on a network file system whose locks do not reach other machines, a file that another
+  // machine is writing would be removed too, and its commit() would fail.
   explicit OutputFile(const std::filesystem::path& path);
 
   // Removes the temporary file unless it was committed.
