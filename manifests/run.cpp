@@ -2,6 +2,7 @@
 
 #include <sys/resource.h>
 
+#include "engine/base/output_file.h"
 #include "manifests/share.h"
 
 namespace triglyph {
@@ -65,6 +66,7 @@ class MarkWork {
       }
     }
     if (const Casualty* casualty = share_.casualty(item.index)) {
+      remove_leftovers(item.job.out.parent_path());
       marking.note_input_hash();
       marking.refuse(status_of(*casualty), casualty->reason);
     } else {

@@ -61,28 +61,12 @@ void remove_if_abandoned(const std::filesystem::path& path) {
   close(file);
 }
 
-// Removes what killed processes left in the directory; once in the life of the process, since it
-// reads the whole directory. Failures are ignored: leftovers are in nobody's way.
-void remove_leftovers(const std::filesystem::path& directory) {
-  static std::mutex mutex;
-  static std::set<std::filesystem::path> known;
-  std::error_code error;
-  {
-    const std::lock_guard lock(mutex);
-    if (!known.insert(std::filesystem::absolute(directory, error)).second) return;
-  }
-  std::filesystem::directory_iterator it(directory, error);
-  for (; !error && it != std::filesystem::directory_iterator(); it.increment(error)) {
-    if (is_temporary_name(it->path().filename())) remove_if_abandoned(it->path());
-  }
-}
-
 // Creates the file and holds a lock on it while it is open. Returns its descriptor, or -1 and
 // errno.
 int create_locked(const std::filesystem::path& path) {
   const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   // Where the file system has no locks, nobody gets one, and nothing is ever taken for a leftover.
-  if (file >= 0) flock(file, LOCK_EX);
+  while (file >= 0 && flock(file, LOCK_EX) != 0 && errno == EINTR) continue;
   return file;
 }
 
@@ -94,13 +78,28 @@ bool was_removed(const std::filesystem::path& path) {
 
 }  // namespace
 
+void remove_leftovers(const std::filesystem::path& parent) {
+  const std::filesystem::path directory = parent.empty() ? "." : parent;
+  static std::mutex mutex;
+  static std::set<std::filesystem::path> known;
+  std::error_code error;
+  // Held until the end: a process with the number of one that was killed makes the same names.
+  const std::lock_guard lock(mutex);
+  if (!known.insert(std::filesystem::absolute(directory, error)).second) return;
+  std::filesystem::directory_iterator it(directory, error);
+  for (; !error && it != std::filesystem::directory_iterator(); it.increment(error)) {
+    if (is_temporary_name(it->path().filename())) remove_if_abandoned(it->path());
+  }
+}
+
 OutputFile::OutputFile(const std::filesystem::path& path)
     : path_(path), temporary_(temporary_name(path)) {
-  const std::filesystem::path directory = path.has_parent_path() ? path.parent_path() : ".";
-  std::error_code error;
-  std::filesystem::create_directories(directory, error);
-  if (error) fail(error.value());
-  remove_leftovers(directory);
+  if (path.has_parent_path()) {
+    std::error_code error;
+    std::filesystem::create_directories(path.parent_path(), error);
+    if (error) fail(error.value());
+  }
+  remove_leftovers(path.parent_path());
   descriptor_ = create_locked(temporary_);
   while (descriptor_ >= 0 && was_removed(temporary_)) {
     close(descriptor_);

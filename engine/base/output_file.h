@@ -17,11 +17,7 @@ class OutputFile {
  public:
   // Creates missing directories and the temporary file ".<stem>.<pid>-<n>.part<extension>", which
   // keeps the extension so that readers recognise the format, and stays locked (flock) while it is
-  // written. Before the first one that a process makes in a directory, removes files there whose
-  // names have this form and that nobody has locked: processes that were killed left them. Throws
-  // Error Unwritable.
-  // note: on a network file system whose locks do not reach other machines, a file that another
-  // machine is writing would be removed too, and its commit() would fail.
+  // written. Calls remove_leftovers() for the directory. Throws Error Unwritable.
   explicit OutputFile(const std::filesystem::path& path);
 
   // Removes the temporary file unless it was committed.
@@ -46,5 +42,13 @@ class OutputFile {
   std::filesystem::path temporary_;
   int descriptor_ = -1;
 };
+
+// Removes the temporary files that killed processes left in the directory (the current one if the
+// path is empty): those whose names have the form above and that nobody has locked. Does so once in
+// the life of the process, since it reads the whole directory, and ignores failures, since
+// leftovers are in nobody's way. note: on a network file system whose locks do not reach other
+// machines, a file that another machine is writing would be removed too, and its commit() would
+// fail.
+void remove_leftovers(const std::filesystem::path& parent);
 
 }  // namespace triglyph
