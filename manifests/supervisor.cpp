@@ -218,7 +218,10 @@ class Supervision {
     if (end.suspects.empty()) {
       throw std::runtime_error("the run was killed by " + cause_of(end.signal));
     }
-    if (end.suspects.size() == 1) return add(end.suspects.front(), end.signal);
+    // somebody else may have sent SIGKILL, which says nothing of the item before it does so again
+    if (end.suspects.size() == 1 && end.signal != SIGKILL) {
+      return add(end.suspects.front(), end.signal);
+    }
     const std::size_t known = order_.casualties.size();
     for (const std::size_t suspect : end.suspects) {
       order_.only = suspect;
