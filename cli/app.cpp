@@ -1,6 +1,7 @@
 #include "cli/app.h"
 
 #include <algorithm>
+#include <csignal>
 #include <exception>
 #include <iostream>
 #include <stdexcept>
@@ -107,6 +108,7 @@ std::unique_ptr<CLI::App> make_app(Action& action) {
 }
 
 int run_app(int argc, char** argv) try {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error of its own
   set_command_line(argc, argv);
   Action action;
   const auto app = make_app(action);

@@ -8,6 +8,7 @@
 #include <unordered_set>
 
 #include "engine/base/error.h"
+#include "manifests/folder_walk.h"
 #include "manifests/manifest.h"
 
 namespace triglyph {
@@ -16,20 +17,13 @@ namespace {
 namespace fs = std::filesystem;
 
 std::vector<fs::path> meshes_in_folder(const fs::path& folder) {
-  std::vector<fs::path> found;
-  std::error_code error;
-  for (fs::recursive_directory_iterator it(folder, error), end; !error && it != end;
-       it.increment(error)) {
-    std::error_code ignored;
-    const bool is_hidden = it->path().filename().string().front() == '.';
-    if (is_hidden && it->is_directory(ignored)) it.disable_recursion_pending();
-    if (!is_hidden && it->is_regular_file(ignored) && is_mesh_name(it->path())) {
-      found.push_back(it->path());
-    }
-  }
-  if (error) throw Error(ErrorCode::Unreadable, folder, "", error.message());
-  std::sort(found.begin(), found.end());
-  return found;
+  const auto is_hidden = [](const fs::path& path) {
+    return path.filename().string().front() == '.';
+  };
+  return files_below(
+      folder,
+      {.enters = [&](const fs::path& inner, int) { return !is_hidden(inner); },
+       .wants = [&](const fs::path& file) { return !is_hidden(file) && is_mesh_name(file); }});
 }
 
 std::vector<std::string> names_in(std::istream& list) {

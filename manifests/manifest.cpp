@@ -7,6 +7,7 @@
 #include <fnmatch.h>
 
 #include "engine/base/error.h"
+#include "manifests/folder_walk.h"
 #include "manifests/json_line.h"
 #include "manifests/resume.h"
 
@@ -56,22 +57,20 @@ std::vector<fs::path> expand_glob(const fs::path& pattern) {
   if (!has_wildcard(pattern.string())) return {pattern};
   const fs::path root = glob_root(pattern);
   const fs::path start = root.empty() ? "." : root;
+  std::error_code ignored;
+  if (!fs::exists(start, ignored) && !ignored) return {};
   const fs::path below = root.empty() ? pattern : pattern.lexically_relative(root);
-  const bool deep = below.has_parent_path();
-  std::vector<fs::path> found;
-  std::error_code error;
-  const auto options = fs::directory_options::skip_permission_denied;
-  for (fs::recursive_directory_iterator it(start, options, error), end; !error && it != end;
-       it.increment(error)) {
-    if (!deep) it.disable_recursion_pending();
-    const fs::path name = it->path().lexically_relative(start);
-    std::error_code ignored;
-    if (it->is_regular_file(ignored) &&
-        matches(below.begin(), below.end(), name.begin(), name.end())) {
-      found.push_back(root / name);
-    }
-  }
-  std::sort(found.begin(), found.end());
+  const auto depth = static_cast<int>(std::distance(below.begin(), below.end()));
+  const bool any_depth = std::find(below.begin(), below.end(), "**") != below.end();
+  const FolderWalk walk = {
+      .enters = [&](const fs::path&, int at) { return any_depth || at + 1 < depth; },
+      .wants =
+          [&](const fs::path& file) {
+            const fs::path name = file.lexically_relative(start);
+            return matches(below.begin(), below.end(), name.begin(), name.end());
+          }};
+  std::vector<fs::path> found = files_below(start, walk);
+  for (fs::path& file : found) file = root / file.lexically_relative(start);
   return found;
 }
 

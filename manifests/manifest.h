@@ -81,7 +81,8 @@ class MeshList final : public JobSource {
 };
 
 // Returns the files that match a pattern with *, ?, [..] or **, sorted. A pattern without wildcards
-// matches itself.
+// matches itself. Throws Error Unreadable for a folder in which there may be matches and that
+// cannot be read.
 [[nodiscard]] std::vector<std::filesystem::path> expand_glob(const std::filesystem::path& pattern);
 
 // Returns the longest leading directory of a pattern that has no wildcards.

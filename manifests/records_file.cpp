@@ -18,12 +18,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Throws Error Usage unless the file is absent, empty or begins with a record.
+// Throws Error Usage unless the file is absent, empty or begins with a record, which may be cut off
+// if it is all there is.
 void check_holds_records(const fs::path& path) {
   std::ifstream stream(path, std::ios::binary);
   std::string line;
   try {
     if (!stream || !read_line(stream, line)) return;
+    if (stream.eof() && line.starts_with("{\"schema\":")) return;
     (void)parse_record(line);
   } catch (const Error&) {
     throw Error(ErrorCode::Usage, path, "",
@@ -98,11 +100,26 @@ std::function<std::optional<Record>()> items_of_ledger(const fs::path& path) {
   };
 }
 
+// Removes what stands after the last newline: a worker died while it wrote that.
+void cut_off_torn_line(const fs::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  std::string line;
+  std::uint64_t end = 0;  // of the whole lines
+  while (read_line(stream, line) && !stream.eof()) end += line.size() + 1;
+  std::error_code error;
+  fs::resize_file(path, end, error);
+  if (error) throw Error(ErrorCode::Unwritable, path, "", error.message());
+}
+
 }  // namespace
 
 RecordsFile::RecordsFile(const fs::path& path, bool append) : path_(path) {
   std::error_code ignored;
-  if (fs::is_regular_file(path, ignored)) check_holds_records(path);
+  if (fs::is_regular_file(path, ignored)) {
+    check_holds_records(path);
+    remove_leftovers(path.parent_path());
+    if (append) cut_off_torn_line(path);
+  }
   errno = 0;
   stream_.open(path, std::ios::binary | (append ? std::ios::app : std::ios::trunc));
   if (!stream_) throw Error(ErrorCode::Unwritable, path, "", system_reason(errno));

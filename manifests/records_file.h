@@ -13,8 +13,9 @@ namespace triglyph {
 
 class RecordsFile {
  public:
-  // Starts the file anew, or goes on with it (`append`). Throws Error Usage for a file that holds
-  // anything but records, which must not be lost, and Unwritable.
+  // Starts the file anew, or goes on with it (`append`), without a last line that is not whole.
+  // Throws Error Usage for a file that holds anything but records, which must not be lost, and
+  // Unwritable.
   RecordsFile(const std::filesystem::path& path, bool append);
 
   // Writes the line at once, so that a run that is killed keeps it. Throws Error Unwritable.

@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 
 #include "engine/base/error.h"
+#include "engine/base/output_file.h"
 #include "manifests/companions.h"
 #include "manifests/share.h"
 
@@ -69,6 +70,7 @@ class MarkWork {
       }
     }
     if (const Casualty* casualty = share_.casualty(item.index)) {
+      remove_leftovers(item.job.out.parent_path());
       marking.note_input_hash();
       marking.refuse(status_of(*casualty), casualty->reason);
     } else {

@@ -112,10 +112,10 @@ class Supervision {
       order_.is_first = false;
       if (end.exit_code) return end.exit_code;
       if (end.was_stopped) return std::nullopt;
-      if (end.slow.empty()) {
-        find_culprits(end);
-      } else {
-        order_.casualties.insert(order_.casualties.end(), end.slow.begin(), end.slow.end());
+      if (end.slow.empty()) find_culprits(end);
+      for (const Casualty& slow : end.slow) {
+        check_is_new(slow.index, "the run hangs");
+        order_.casualties.push_back(slow);
       }
       if ((*board_).stop_) return std::nullopt;
     }
@@ -205,6 +205,12 @@ class Supervision {
     return slow;
   }
 
+  // A casualty is not processed any more. A worker that dies or hangs all the same would do so for
+  // ever, as where what became of the casualty cannot be written.
+  void check_is_new(std::size_t index, const std::string& what) const {
+    if (order_.casualty(index) != nullptr) throw std::runtime_error(what);
+  }
+
   // Tries the suspects alone, and adds those that kill again to the casualties.
   void find_culprits(const End& end) {
     if (end.signal == SIGPIPE) {  // the reader of the output is gone
@@ -213,12 +219,16 @@ class Supervision {
       std::raise(SIGPIPE);
     }
     const auto add = [&](std::size_t index, int signal) {
+      check_is_new(index, "the run was killed by " + cause_of(signal));
       order_.casualties.push_back({index, false, "killed the process by " + cause_of(signal)});
     };
     if (end.suspects.empty()) {
       throw std::runtime_error("the run was killed by " + cause_of(end.signal));
     }
-    if (end.suspects.size() == 1) return add(end.suspects.front(), end.signal);
+    // somebody else may have sent SIGKILL, which says nothing of the item before it does so again
+    if (end.suspects.size() == 1 && end.signal != SIGKILL) {
+      return add(end.suspects.front(), end.signal);
+    }
     const std::size_t known = order_.casualties.size();
     for (const std::size_t suspect : end.suspects) {
       order_.only = suspect;

@@ -1,5 +1,11 @@
 // Atomic file output: the bytes are written under a temporary name in the same directory, and the
 // file is renamed when it is complete.
+//
+// The order is: write, fdatasync of the file, rename. A file that has its name is therefore whole,
+// also after a power failure. The directory is not synchronised: that costs 1.2 to 1.5 ms a file,
+// 11 % of marking meshes of 2,000 triangles, and saves only that after a power failure the last
+// names are missing or still those of the former files. The ledger, which compares contents, then
+// has these made again.
 #pragma once
 
 #include <filesystem>
@@ -9,8 +15,9 @@ namespace triglyph {
 
 class OutputFile {
  public:
-  // Creates missing directories and the temporary file ".<stem>.<unique>.part<extension>", which
-  // keeps the extension so that readers recognise the format. Throws Error Unwritable.
+  // Creates missing directories and the temporary file ".<stem>.<pid>-<n>.part<extension>", which
+  // keeps the extension so that readers recognise the format, and stays locked (flock) while it is
+  // written. Calls remove_leftovers() for the directory. Throws Error Unwritable.
   explicit OutputFile(const std::filesystem::path& path);
 
   // Removes the temporary file unless it was committed.
@@ -35,5 +42,13 @@ class OutputFile {
   std::filesystem::path temporary_;
   int descriptor_ = -1;
 };
+
+// Removes the temporary files that killed processes left in the directory (the current one if the
+// path is empty): those whose names have the form above and that nobody has locked. Does so once in
+// the life of the process, since it reads the whole directory, and ignores failures, since
+// leftovers are in nobody's way. note: on a network file system whose locks do not reach other
+// machines, a file that another machine is writing would be removed too, and its commit() would
+// fail.
+void remove_leftovers(const std::filesystem::path& parent);
 
 }  // namespace triglyph

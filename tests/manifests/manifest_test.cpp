@@ -1,6 +1,7 @@
 #include "manifests/manifest.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "engine/base/error.h"
 #include "engine/scheme/registry.h"
@@ -78,6 +79,20 @@ TEST(Manifest, GlobsAreSortedAndKeepTheirFolders) {
   EXPECT_EQ(names_of("in/**/*.obj"), "a.obj b.obj deep/er/c.obj ");
   EXPECT_EQ(names_of("in/**/e[a-z]/?.obj"), "deep/er/c.obj ");
   EXPECT_EQ(names_of("in/d.ply"), "in/d.ply ");
+}
+
+// A folder in which nothing can match is not looked into; one in which something may must be read.
+TEST(Manifest, GlobsLeaveNoFolderOutInSilence) {
+  if (geteuid() == 0) GTEST_SKIP() << "root may read every folder";
+  const test::TempFolder folder;
+  folder.write("a/b.obj", "");
+  folder.write("closed/c.obj", "");
+  fs::permissions(folder / "closed", fs::perms::none);
+  EXPECT_EQ(expand_glob(folder / "a/*.obj").size(), 1U);
+  EXPECT_EQ(expand_glob(folder / "*.obj").size(), 0U);
+  EXPECT_THROW((void)expand_glob(folder / "*/*.obj"), Error);
+  EXPECT_THROW((void)expand_glob(folder / "**/*.obj"), Error);
+  fs::permissions(folder / "closed", fs::perms::owner_all);
 }
 
 TEST(Manifest, ErrorsNameTheLine) {
