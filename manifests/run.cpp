@@ -5,6 +5,7 @@
 #include <sys/resource.h>
 
 #include "engine/base/error.h"
+#include "engine/base/stop.h"
 
 namespace triglyph {
 namespace {
@@ -52,6 +53,8 @@ void read(ReadItem& item, std::span<const Encoding> encodings, std::span<const K
     result.reading = read_file(result.path, encodings, keys);
   } catch (const Error& error) {
     fail(file_status(name_of(error.code())).value_or(FileStatus::Failed), error.what());
+  } catch (const Stopped&) {  // then there is no result
+    return;
   } catch (const std::bad_alloc&) {
     fail(FileStatus::Failed, result.path.string() + ": not enough memory");
   } catch (const std::exception& error) {
@@ -72,6 +75,7 @@ void verify(VerifyItem& item, const Key& key, bool locate) {
 
 void run_jobs(JobSource& jobs, const Key& key, const FlowOptions& options,
               const std::function<void(const Record&)>& on_record, const std::atomic<bool>& stop) {
+  const StopScope scope(stop);
   using Stage = std::function<void(FileMarking&)>;
   const auto unless_stopped = [&stop](const Stage& stage) {
     return [stage, &stop](FlowItem& item) {
@@ -80,7 +84,6 @@ void run_jobs(JobSource& jobs, const Key& key, const FlowOptions& options,
       stage(marking);
     };
   };
-  // after the read-back a mesh is nearly done, so it is finished
   const auto always = [](const Stage& stage) {
     return [stage](FlowItem& item) { stage(static_cast<MarkItem&>(item).marking); };
   };
@@ -106,6 +109,7 @@ void read_files(std::span<const fs::path> files, std::span<const Encoding> encod
                 std::span<const Key> keys, const FlowOptions& options,
                 const std::function<void(const ReadResult&)>& on_result,
                 const std::atomic<bool>& stop) {
+  const StopScope scope(stop);
   Flow flow;
   std::size_t next = 0;
   flow.next = [&]() -> std::unique_ptr<FlowItem> {
@@ -130,6 +134,7 @@ void verify_files(const RecordSource& records, const Key& key, bool locate,
                   const FlowOptions& options,
                   const std::function<void(const Record&, const Verification&)>& on_verdict,
                   const std::atomic<bool>& stop) {
+  const StopScope scope(stop);
   Flow flow;
   std::size_t next = 0;
   flow.next = [&]() -> std::unique_ptr<FlowItem> {

@@ -9,6 +9,7 @@
 #include "engine/base/error.h"
 #include "engine/base/output_file.h"
 #include "engine/base/parallel.h"
+#include "engine/base/stop.h"
 #include "engine/geometry/box.h"
 #include "engine/marking/extract.h"
 #include "engine/marking/mark.h"
@@ -106,11 +107,14 @@ void FileMarking::run_stage(double& seconds, const Stage& stage) noexcept {
     result_.status = status_of(error.code());
     result_.error = error.path().empty() ? result_.mesh.string() + ": " + error.what()
                                          : std::string(error.what());
+  } catch (const Stopped& stopped) {
+    end(FileStatus::Interrupted, stopped.what());
   } catch (const std::bad_alloc&) {
     end(FileStatus::Failed, "not enough memory");
   } catch (const std::exception& error) {
     end(FileStatus::Failed, error.what());
   }
+  if (!result_.is_marked()) result_.output_hash.clear();
   seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
@@ -190,7 +194,6 @@ void FileMarking::read_back(const Key& key) noexcept {
       end(FileStatus::NotVerified, "the mark could not be read back (" +
                                        std::to_string(result_.units_embedded) + " of " +
                                        std::to_string(result_.units_assigned) + " units)");
-      result_.output_hash.clear();
       return;
     }
     if (result_.request.options.detail) result_.units = std::move(embedded);

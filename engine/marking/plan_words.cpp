@@ -4,6 +4,7 @@
 
 #include "engine/assignment/assignment.h"
 #include "engine/base/error.h"
+#include "engine/base/stop.h"
 
 namespace triglyph {
 namespace {
@@ -78,6 +79,7 @@ WordPlan WordAssigner::solve(std::uint32_t redundancy) {
   const std::vector<std::uint32_t> demand = share_demand(valid_.size(), words_.size(), redundancy);
   WordPlan plan;
   for (std::size_t block = 0; block < blocks_; ++block) {
+    stop_point();
     std::vector<std::uint32_t> share(words_.size());
     for (std::size_t word = 0; word < words_.size(); ++word) {
       const auto until = [&](std::size_t b) { return std::size_t{demand[word]} * b / blocks_; };

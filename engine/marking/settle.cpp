@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/base/parallel.h"
+#include "engine/base/stop.h"
 
 namespace triglyph {
 namespace {
@@ -67,6 +68,7 @@ class EmbeddedPlacements {
   // Takes back every unit that moved a corner of a flipped triangle, until there is none.
   void take_back_flips() {
     for (;;) {
+      stop_point();
       const auto flipped =
           flipped_triangles(surface_.mesh.triangles, surface_.mesh.positions, positions_);
       if (flipped.empty()) return;

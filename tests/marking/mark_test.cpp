@@ -1,12 +1,16 @@
 #include "engine/marking/mark.h"
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <set>
+#include <thread>
 
 #include <gtest/gtest.h>
 
 #include "engine/base/error.h"
+#include "engine/base/stop.h"
 #include "engine/marking/extract.h"
 #include "engine/marking/settle.h"
 #include "engine/scheme/registry.h"
@@ -281,6 +285,30 @@ TEST_P(EverySchemesMark, EveryCarrierReadsItsWordWithMargin) {
     ASSERT_TRUE(at != readings.end() && at->anchor == carrier.anchor);
     EXPECT_EQ(at->word, marking.words[carrier.word]);
     EXPECT_LE(at->worst_offset, 0.5);
+  }
+}
+
+// Filling this ball takes seconds; the flag is set before, and at moments of the layout, the costs
+// and the assignment.
+TEST(Mark, StopsSoonAfterTheFlagIsSet) {
+  using namespace std::chrono_literals;
+  using Clock = std::chrono::steady_clock;
+  const test::Solid ball(make_sample_shape(SampleShape::Closed, 200'000, 1));
+  MarkOptions options = default_mark_options("tsq", true);
+  for (const auto delay : {0ms, 100ms, 500ms, 1500ms}) {
+    std::atomic<bool> flag = false;
+    const StopScope scope(flag);
+    Clock::time_point set;
+    std::thread interrupter([&] {
+      std::this_thread::sleep_for(delay);
+      set = Clock::now();
+      flag = true;
+    });
+    EXPECT_THROW((void)mark(ball.surface(), Fill{}, Key::trial(), options, test::as_float, 1e-7),
+                 Stopped)
+        << delay.count();
+    interrupter.join();
+    EXPECT_LT(Clock::now() - set, 5s) << delay.count();
   }
 }
 
