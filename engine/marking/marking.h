@@ -12,8 +12,9 @@ namespace triglyph {
 
 enum class MarkStatus {
   Marked,
-  TooSmall,   // fewer units than parts, or a part without a unit that can carry it
-  TooCoarse,  // the numbers of the file are too far apart for the quantiser cells
+  TooSmall,    // fewer units than parts, or a part without a unit that can carry it
+  TooCoarse,   // the numbers of the file are too far apart for the quantiser cells
+  TooVisible,  // some part has no unit that can carry it within MarkOptions::max_move_percent
 };
 
 // A unit that carries a word after rounding and settling.
@@ -22,6 +23,12 @@ struct Carrier {
   std::uint32_t word = 0;  // index into Marking::words
 
   bool operator==(const Carrier&) const = default;
+};
+
+// What would help a mesh that is refused. Each was tried on the mesh with success.
+struct WayOut {
+  double move_needed_percent = 0;  // the least move that some part needs; 0: not known
+  double max_move_percent = 0;     // the least limit of moves that does; 0: none, or not tried
 };
 
 struct Marking {
@@ -40,6 +47,7 @@ struct Marking {
   double cost_sum = 0;               // likewise
   double layout_seconds = 0;         // step 1: candidates, conflicts, layout
   double assign_seconds = 0;         // step 2: costs and assignment, all rounds
+  WayOut way_out;                    // unless marked
 };
 
 // Returns the nearest point that the output can represent.

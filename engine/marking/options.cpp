@@ -89,8 +89,10 @@ OptionTable<Options> make_table() {
       count_option<Options>("redundancy", &Options::redundancy, {0, 1e6}, "units", "32",
                             "Units wanted for each part of the message; 0: as many as there are"),
       number_option<Options>("max_move", &Options::max_move_percent, {0, 100},
-                             "percent of the diagonal", "the scheme's",
-                             "Move of a point beyond which parts get fewer units; 0: no limit"),
+                             "percent of the diagonal", "",
+                             "Farthest that a point may move; a mesh that cannot be marked so is "
+                             "refused. Without it, parts get fewer units rather than move points "
+                             "farther than 0.1, except with iie; 0: no limit"),
       number_option<Options>("drop_dearest", &Options::drop_dearest_percent, {0, 99.9}, "percent",
                              "0",
                              "Share of the candidates to leave out, the most expensive ones first: "
@@ -174,7 +176,6 @@ MarkOptions default_mark_options(std::string_view scheme, bool fill) {
   options.scheme_options = defaults.options;
   if (defaults.has_few_units && !fill) {
     options.layout.method = LayoutMethod::LocalSearch;
-    options.max_move_percent = 0;
   }
   return options;
 }

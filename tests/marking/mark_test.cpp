@@ -13,6 +13,7 @@
 #include "engine/base/stop.h"
 #include "engine/marking/extract.h"
 #include "engine/marking/settle.h"
+#include "engine/mesh/surface_diagonal.h"
 #include "engine/scheme/registry.h"
 #include "tests/support/arenas.h"
 #include "tests/support/attacks.h"
@@ -192,6 +193,109 @@ TEST(Mark, OptimisedMovesLessThanUnoptimised) {
   EXPECT_LE(least_sum.cost_sum, bottleneck.cost_sum);
   EXPECT_GT(bottleneck.units_valid, unoptimised.units_valid);
   EXPECT_LE(bottleneck.units_valid, bottleneck.units_bound);
+}
+
+// The farthest move of a point, in percent of the diagonal.
+double farthest_move(const Mesh& mesh, const Marking& marking) {
+  double farthest = 0;
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    farthest = std::max(farthest, (marking.positions[i] - mesh.positions[i]).norm());
+  }
+  return 100 * farthest / surface_diagonal(mesh);
+}
+
+// Coarse numbers move points beyond what the assignment knows of.
+Vec3 with_three_decimals(const Vec3& p) {
+  return Vec3(std::round(p[0] * 1e3), std::round(p[1] * 1e3), std::round(p[2] * 1e3)) / 1e3;
+}
+
+TEST_P(EverySchemesMark, NoPointMovesFartherThanTheLimit) {
+  const test::Solid& ball = ball_for(options_);
+  for (const CostFunction cost : {CostFunction::Displacement, CostFunction::Normal}) {
+    for (const double percent : {1.0, 0.3, 0.1, 0.05}) {
+      options_.cost = cost;
+      options_.max_move_percent = percent;
+      const Marking marking =
+          mark(ball.surface(), kMessage, Key::trial(), options_, test::as_float, 1e-7);
+      EXPECT_LE(farthest_move(ball.mesh, marking), percent);
+      if (marking.status != MarkStatus::Marked) {
+        EXPECT_EQ(marking.status, MarkStatus::TooVisible) << percent;
+        continue;
+      }
+      EXPECT_EQ(read({marking.positions, ball.mesh.triangles}, Key::trial(), options_).message,
+                kMessage);
+    }
+  }
+}
+
+TEST(Mark, NoPointMovesFartherThanTheLimitAfterRounding) {
+  MarkOptions options;
+  options.max_move_percent = 0.06;
+  const Marking marking = mark(test::bumpy_ball().surface(), kMessage, Key::trial(), options,
+                               with_three_decimals, 1e-3);
+  EXPECT_LE(farthest_move(test::bumpy_ball().mesh, marking), 0.06);
+}
+
+// Small meshes of all shapes, and limits so low that none can be marked.
+TEST_P(EverySchemesMark, TheLeastLimitThatIsNamedDoesAndATenthLessDoesNot) {
+  const SampleShape shapes[] = {SampleShape::Closed, SampleShape::Open, SampleShape::HighGenus};
+  const Message message{'m'};
+  int refused = 0;
+  for (std::uint64_t i = 0; i < 6; ++i) {
+    const std::size_t triangles = options_.scheme == "iie" ? 20'000 : 1000;
+    const test::Solid solid(make_sample_shape(shapes[i % 3], triangles, i));
+    const auto mark_within = [&](double percent) {
+      options_.max_move_percent = percent;
+      return mark(solid.surface(), message, Key::trial(), options_, test::as_float, 1e-7);
+    };
+    const Marking refusal = mark_within(1e-3);
+    if (refusal.status == MarkStatus::TooSmall) continue;
+    ASSERT_EQ(refusal.status, MarkStatus::TooVisible);
+    ++refused;
+    const WayOut& way_out = refusal.way_out;
+    EXPECT_GE(way_out.max_move_percent, way_out.move_needed_percent);
+    const Marking marked = mark_within(way_out.max_move_percent);
+    EXPECT_EQ(marked.status, MarkStatus::Marked) << way_out.max_move_percent;
+    EXPECT_LE(farthest_move(solid.mesh, marked), way_out.max_move_percent);
+    EXPECT_EQ(mark_within(0.9 * way_out.move_needed_percent).status, MarkStatus::TooVisible);
+  }
+  EXPECT_GT(refused, 3);
+}
+
+TEST(Mark, FillAndSequentialAssignmentLeaveOutWhatMovesTooFar) {
+  const test::Solid& ball = test::bumpy_ball();
+  MarkOptions options = default_mark_options("tsq", true);
+  const auto fill = [&] {
+    return mark(ball.surface(), Fill{}, Key::trial(), options, test::as_float, 1e-7);
+  };
+  for (const AssignMethod assign : {AssignMethod::Bottleneck, AssignMethod::Sequential}) {
+    options.assign = assign;
+    options.max_move_percent.reset();
+    const Marking all = fill();
+    const double percent = 0.3 * farthest_move(ball.mesh, all);
+    options.max_move_percent = percent;
+    const Marking some = fill();
+    EXPECT_EQ(some.status, MarkStatus::Marked);
+    EXPECT_LE(farthest_move(ball.mesh, some), percent);
+    EXPECT_LT(some.carriers.size(), all.carriers.size());
+    EXPECT_GT(some.carriers.size(), all.carriers.size() / 10);
+  }
+  options.max_move_percent = 1e-9;
+  EXPECT_EQ(fill().status, MarkStatus::TooVisible);
+}
+
+// A point far away that no face uses must not make moves look small.
+TEST(Mark, LimitsRelateToWhatFacesUse) {
+  Mesh mesh = test::bumpy_ball().mesh;
+  MarkOptions options;
+  options.max_move_percent = 0.05;
+  const auto marked = [&] {
+    const test::Solid solid(mesh);
+    return mark(solid.surface(), kMessage, Key::trial(), options, test::as_float, 1e-7);
+  };
+  const Marking without = marked();
+  mesh.positions.emplace_back(1000, 0, 0);
+  EXPECT_EQ(marked().carriers, without.carriers);
 }
 
 TEST(Mark, RedundancyLeavesTheDearestUnitsOut) {
