@@ -58,6 +58,8 @@ std::optional<FileStatus> refused_status(MarkStatus status) {
       return FileStatus::TooCoarse;
     case MarkStatus::TooVisible:
       return FileStatus::TooVisible;
+    case MarkStatus::AlreadyMarked:
+      return FileStatus::AlreadyMarked;
   }
   return FileStatus::Failed;
 }
@@ -203,7 +205,8 @@ void FileMarking::read_back(const Key& key) noexcept {
     if (!verified) {
       end(FileStatus::NotVerified, "the mark could not be read back (" +
                                        std::to_string(result_.units_embedded) + " of " +
-                                       std::to_string(result_.units_assigned) + " units)");
+                                       std::to_string(result_.units_assigned) +
+                                       " units): try another --scheme or a larger --step");
       return;
     }
     if (result_.request.options.detail) result_.units = std::move(embedded);

@@ -25,7 +25,7 @@ OptionSpec scheme_spec() {
 }
 
 std::vector<OptionSpec> message_specs() {
-  return {{"message", OptionKind::Text, "", {}, {}, "triglyph", "Message to hide, 1 to 256 bytes"},
+  return {{"message", OptionKind::Text, "", {}, {}, "", "Message to hide, 1 to 256 bytes"},
           {"message_hex", OptionKind::Text, "", {}, {}, "", "Message in hexadecimal"},
           {"fill",
            OptionKind::Flag,
@@ -97,6 +97,8 @@ OptionTable<Options> make_table() {
                              "0",
                              "Share of the candidates to leave out, the most expensive ones first: "
                              "lowers capacity and visibility"),
+      flag_option<Options>("remark", &Options::remark,
+                           "Mark a mesh also if it carries a mark of this key already"),
       flag_option<Options>(
           "detail", &Options::detail,
           "List every unit in the record, for verify --detail; always on with iie")};
@@ -263,6 +265,8 @@ MarkRequest resolve(const OptionValues& values) {
     request.payload = from_hex(*hex);
   } else if (const std::string* text = text_of("message")) {
     request.payload = Message(text->begin(), text->end());
+  } else {
+    throw Error(ErrorCode::Usage, {}, "", "no message: give --message, --message-hex or --fill");
   }
   request.options = resolved_options(values, scheme_of(values), request.is_fill());
   if (!request.is_fill()) check_message(request.options.format, request.message().size());

@@ -58,6 +58,8 @@ struct MarkOptions {
   double drop_dearest_percent = 0;
   // Fill uses format.subscript_bits unchanged instead of as few as tell the units apart.
   bool keeps_subscript_bits = false;
+  // Marks a mesh also if it carries a mark of this key, scheme and word format. Fill never asks.
+  bool remark = false;
   bool detail = false;  // reports every unit, so that verification can locate damage
 
   [[nodiscard]] Encoding encoding() const { return {scheme, format, scheme_options}; }

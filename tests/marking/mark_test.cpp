@@ -12,6 +12,7 @@
 #include "engine/base/error.h"
 #include "engine/base/stop.h"
 #include "engine/marking/extract.h"
+#include "engine/marking/plan_words.h"
 #include "engine/marking/settle.h"
 #include "engine/mesh/surface_diagonal.h"
 #include "engine/scheme/registry.h"
@@ -92,6 +93,52 @@ TEST_P(EverySchemesMark, AnotherKeyAndAnUnmarkedMeshYieldNothing) {
   EXPECT_EQ(read(marked, Key::trial(), options_).message, kMessage);
   for (int i = 0; i < 20; ++i) EXPECT_FALSE(read(marked, Key::generate(), options_).message);
   EXPECT_FALSE(read(ball_for(options_).mesh, Key::trial(), options_).message);
+}
+
+TEST_P(EverySchemesMark, AMarkedMeshIsMarkedAgainOnlyIfThatIsWanted) {
+  const test::Solid once(marked_ball(options_));
+  const auto mark_again = [&](const Key& key) {
+    return mark(once.surface(), Message{'b'}, key, options_, test::as_float, 1e-7);
+  };
+  const Marking refused = mark_again(Key::trial());
+  EXPECT_EQ(refused.status, MarkStatus::AlreadyMarked);
+  ASSERT_TRUE(refused.found);
+  EXPECT_EQ(refused.found->message, kMessage);
+  EXPECT_GT(refused.found->agreeing, 0U);
+  EXPECT_EQ(mark_again(Key::generate()).status, MarkStatus::Marked);
+  options_.remark = true;
+  const Marking again = mark_again(Key::trial());
+  ASSERT_EQ(again.status, MarkStatus::Marked);
+  EXPECT_EQ(read({again.positions, once.mesh.triangles}, Key::trial(), options_).message,
+            Message{'b'});
+}
+
+// A sample of a mesh that carries a message looks marked; of others one in a hundred does.
+TEST_P(EverySchemesMark, SamplesOfMarkedMeshesRepeatWords) {
+  const auto looks_marked = [&](const Mesh& mesh) -> std::optional<bool> {
+    const test::Solid solid(mesh);
+    const WordCode code(Key::trial(), options_.format);
+    const auto scheme = make_scheme(options_.scheme, code, options_.scheme_options);
+    const auto sample = scheme->bind(solid.surface())->read_sample(6);
+    if (!sample) return std::nullopt;
+    return has_repeated_words(*sample, options_.format);
+  };
+  if (!looks_marked(ball_for(options_).mesh)) GTEST_SKIP() << "it is read as a whole";
+  EXPECT_EQ(looks_marked(marked_ball(options_)), true);
+  EXPECT_EQ(looks_marked(test::cropped_half(marked_ball(options_), 1)), true);
+  int alarms = 0;
+  for (std::uint64_t i = 0; i < 60; ++i) {
+    alarms += *looks_marked(make_sample_shape(SampleShape::Closed, 1000 + 500 * i, i)) ? 1 : 0;
+  }
+  EXPECT_LE(alarms, 4);
+}
+
+TEST_P(EverySchemesMark, FillIsNotAskedForAMark) {
+  const test::Solid once(marked_ball(options_));
+  EXPECT_EQ(mark(once.surface(), Fill{}, Key::trial(), default_mark_options(options_.scheme, true),
+                 test::as_float, 1e-7)
+                .status,
+            MarkStatus::Marked);
 }
 
 // 200 unmarked meshes: no false alarm. With a 32-bit tag one is expected in 20 million such runs.
@@ -348,6 +395,82 @@ TEST(Mark, TooSmallAndTooCoarseAreSaid) {
   };
   EXPECT_EQ(mark(test::bumpy_ball().surface(), kMessage, Key::trial(), {}, coarse, step).status,
             MarkStatus::TooCoarse);
+}
+
+// Small meshes of all shapes, and a message that is far too long for them.
+TEST_P(EverySchemesMark, TheShorterMessageThatIsNamedFits) {
+  const SampleShape shapes[] = {SampleShape::Closed, SampleShape::Open, SampleShape::HighGenus};
+  Message message(100);
+  while (parts_for(options_.format, message.size()) > 1U << options_.format.subscript_bits) {
+    message.pop_back();
+  }
+  for (std::size_t i = 0; i < message.size(); ++i) message[i] = static_cast<std::uint8_t>(37 * i);
+  int shortened = 0;
+  for (std::uint64_t i = 0; i < 9; ++i) {
+    const std::size_t triangles = (options_.scheme == "iie" ? 3000 : 250) * (1 + i / 3);
+    const test::Solid solid(make_sample_shape(shapes[i % 3], triangles, i));
+    const auto mark_with = [&](std::size_t bytes) {
+      const Message part(message.begin(), message.begin() + static_cast<std::ptrdiff_t>(bytes));
+      return mark(solid.surface(), part, Key::trial(), options_, test::as_float, 1e-7);
+    };
+    const Marking refused = mark_with(message.size());
+    ASSERT_EQ(refused.status, MarkStatus::TooSmall) << i;
+    const std::size_t bytes = refused.way_out.message_bytes;
+    if (bytes == 0) {
+      EXPECT_EQ(mark_with(1).status, MarkStatus::TooSmall) << i;
+      continue;
+    }
+    ++shortened;
+    const Marking marked = mark_with(bytes);
+    ASSERT_EQ(marked.status, MarkStatus::Marked) << i;
+    const Message part(message.begin(), message.begin() + static_cast<std::ptrdiff_t>(bytes));
+    EXPECT_EQ(read({marked.positions, solid.mesh.triangles}, Key::trial(), options_).message, part);
+    EXPECT_EQ(mark_with(bytes + 1).status, MarkStatus::TooSmall) << i;
+  }
+  EXPECT_GT(shortened, 2);
+}
+
+TEST(Mark, TheWiderCellsThatAreNamedSurviveCoarseNumbers) {
+  double step = 1e-5;
+  const auto coarse = [&](const Vec3& p) {
+    return Vec3(std::round(p[0] / step), std::round(p[1] / step), std::round(p[2] / step)) * step;
+  };
+  MarkOptions options;
+  const auto mark_coarsely = [&] {
+    return mark(test::bumpy_ball().surface(), kMessage, Key::trial(), options, coarse, step);
+  };
+  Marking refused = mark_coarsely();
+  while (refused.status != MarkStatus::TooCoarse) {
+    step *= 1.2;
+    refused = mark_coarsely();
+  }
+  ASSERT_GT(refused.way_out.step, 0.02);
+  options.scheme_options["step"] = refused.way_out.step;
+  const Marking marked = mark_coarsely();
+  ASSERT_EQ(marked.status, MarkStatus::Marked);
+  EXPECT_EQ(
+      read({marked.positions, test::bumpy_ball().mesh.triangles}, Key::trial(), options).message,
+      kMessage);
+}
+
+// Moves ten times as far as usual are made only for those who allow them.
+TEST(Mark, ALimitThatLetsMovesBeSeenIsNamedWhereTheUsualOneIsInTheWay) {
+  const test::Solid solid(make_sample_shape(SampleShape::HighGenus, 250, 2));
+  int named = 0;
+  for (std::uint8_t c = 'a'; c <= 'z'; ++c) {
+    MarkOptions options;
+    const auto mark_small = [&] {
+      return mark(solid.surface(), Message{c}, Key::trial(), options, test::as_float, 1e-7);
+    };
+    const Marking refused = mark_small();
+    if (refused.status == MarkStatus::Marked) continue;
+    if (refused.way_out.max_move_percent == 0) continue;
+    ++named;
+    EXPECT_GT(refused.way_out.max_move_percent, kUsualMove * kVisibleMove);
+    options.max_move_percent = refused.way_out.max_move_percent;
+    EXPECT_EQ(mark_small().status, MarkStatus::Marked);
+  }
+  EXPECT_GT(named, 0);
 }
 
 TEST(Mark, RefusesUnknownSchemesAndCellWidths) {

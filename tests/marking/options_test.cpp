@@ -70,6 +70,17 @@ TEST(MarkOptions, AMessageInAnyFormReplacesOneInAnyOther) {
   EXPECT_THROW((void)resolve({{"message_hex", std::string()}}), Error);
 }
 
+TEST(MarkOptions, AMissingMessageIsRefusedWithItsThreeForms) {
+  try {
+    (void)resolve({{"fill", false}});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::Usage);
+    EXPECT_STREQ(error.what(), "no message: give --message, --message-hex or --fill");
+  }
+  EXPECT_EQ(find_mark_option("message")->default_text, "");
+}
+
 TEST(MarkOptions, OptionsOfAnotherSchemeContradictTheSchemeInUse) {
   EXPECT_THROW(check_contradictions({{"radius", 1.0}}, "tsq"), Error);
   EXPECT_NO_THROW(check_contradictions({{"radius", 1.0}}, "iie"));
