@@ -4,6 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/output_file.h"
+#include "engine/base/stop.h"
 #include "manifests/companions.h"
 #include "manifests/share.h"
 
@@ -129,6 +130,7 @@ class MarkWork {
 
 void run_jobs(JobSource& jobs, const Key& key, const RunContext& context, const RunEvents& events,
               const std::atomic<bool>& stop) {
+  const StopScope scope(stop);
   const MarkWork work(key, context, stop);
   const Share share(context);
   Flow flow;

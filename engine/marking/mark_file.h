@@ -68,7 +68,7 @@ struct MarkedFile {
   double cost_max = 0;               // of the assignment, model units
   double cost_sum = 0;               // likewise
   double hausdorff = 0;              // symmetric, model units
-  double hausdorff_rel_diag = 0;     // relative to the bounding box's diagonal
+  double hausdorff_rel_diag = 0;     // relative to the surface's diagonal
   double displacement_max = 0;       // model units
   double displacement_rms = 0;       // model units, over all points
   // The embedded units, ascending by anchor; only with MarkOptions::detail.
