@@ -8,7 +8,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/output_file.h"
-#include "engine/io/mapped_file.h"
+#include "engine/io/file_bytes.h"
 
 namespace triglyph {
 namespace {
@@ -64,7 +64,7 @@ void add_file(std::string_view text, const fs::path& folder, std::vector<fs::pat
 void add_textures(const fs::path& library, const fs::path& folder, std::vector<fs::path>& found) {
   std::error_code error;
   if (fs::file_size(folder / library, error) == 0 || error) return;
-  const MappedFile file = MappedFile::open(folder / library);
+  const FileBytes file = FileBytes::open(folder / library);
   std::string_view text(file.bytes().data(), file.bytes().size());
   const fs::path below = library.parent_path();
   while (!text.empty()) {
@@ -91,8 +91,8 @@ bool have_same_content(const fs::path& a, const fs::path& b) {
   const auto size = fs::file_size(a, error);
   if (error || fs::file_size(b, error) != size || error) return false;
   if (size == 0) return true;
-  const MappedFile first = MappedFile::open(a);
-  const MappedFile second = MappedFile::open(b);
+  const FileBytes first = FileBytes::open(a);
+  const FileBytes second = FileBytes::open(b);
   return std::equal(first.bytes().begin(), first.bytes().end(), second.bytes().begin(),
                     second.bytes().end());
 }
@@ -105,7 +105,7 @@ std::vector<fs::path> companions_of(const fs::path& mesh) {
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   const bool is_obj = ending == ".obj";
   if (!is_obj && ending != ".ply") return {};
-  const MappedFile file = MappedFile::open(mesh);
+  const FileBytes file = FileBytes::open(mesh);
   std::string_view text(file.bytes().data(), file.bytes().size());
   const fs::path folder = mesh.parent_path();
   std::vector<fs::path> found;
@@ -132,7 +132,7 @@ void copy_companions(const fs::path& mesh, const fs::path& out) {
                   "is there with another content than " + source.string());
     }
     OutputFile copy(target);
-    if (fs::file_size(source, ignored) > 0) copy.write(MappedFile::open(source).bytes());
+    if (fs::file_size(source, ignored) > 0) copy.write(FileBytes::open(source).bytes());
     copy.commit();
   }
 }

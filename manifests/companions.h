@@ -12,9 +12,9 @@ namespace triglyph {
 // Error Unreadable. O(bytes).
 [[nodiscard]] std::vector<std::filesystem::path> companions_of(const std::filesystem::path& mesh);
 
-// Copies the companions of a mesh to the same places beside its output. A file that is there already
-// with the same content is left as it is. Throws Error Usage if one with another content is there,
-// Unreadable and Unwritable.
+// Copies the companions of a mesh to the same places beside its output. A file that is there
+// already with the same content is left as it is. Throws Error Usage if one with another content is
+// there, Unreadable and Unwritable.
 void copy_companions(const std::filesystem::path& mesh, const std::filesystem::path& out);
 
 }  // namespace triglyph

@@ -48,6 +48,8 @@ class MarkWork {
       mark(item, marking);
     } catch (const Error& error) {  // of the ledger or a companion: then there must be no output
       marking.refuse(file_status(name_of(error.code())).value_or(FileStatus::Failed), error.what());
+    } catch (const Stopped&) {
+      marking.interrupt();
     } catch (const std::exception& error) {
       marking.refuse(FileStatus::Failed, error.what());
     }

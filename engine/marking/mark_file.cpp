@@ -10,7 +10,7 @@
 #include "engine/base/output_file.h"
 #include "engine/base/parallel.h"
 #include "engine/base/stop.h"
-#include "engine/io/mapped_file.h"
+#include "engine/io/file_bytes.h"
 #include "engine/marking/extract.h"
 #include "engine/marking/mark.h"
 #include "engine/marking/readable.h"
@@ -254,7 +254,7 @@ void FileMarking::publish(bool keeps_time) noexcept {
 
 void FileMarking::note_input_hash() noexcept {
   try {
-    result_.input_hash = content_hash(MappedFile::open(result_.mesh).bytes());
+    result_.input_hash = content_hash(FileBytes::open(result_.mesh).bytes());
   } catch (const std::exception&) {
     result_.input_hash.clear();
   }
