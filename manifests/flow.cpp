@@ -1,6 +1,7 @@
 #include "manifests/flow.h"
 
 #include <algorithm>
+#include <atomic>
 #include <exception>
 #include <map>
 #include <mutex>
@@ -114,11 +115,11 @@ class Graph {
         admit_(graph_, tbbflow::serial,
                [this](const Request& request, auto& ports) { decide(request, ports); }),
         work_(graph_, tbbflow::unlimited, [this](const ItemPointer& item, auto& ports) {
-          flow_.work(*item);
+          unless_failed([&] { flow_.work(*item); });
           std::get<0>(ports).try_put(Released{item->memory_estimate});
-          if (const int delivered = delivery_.take(item); delivered > 0) {
-            std::get<1>(ports).try_put(delivered);
-          }
+          int delivered = 0;
+          unless_failed([&] { delivered = delivery_.take(item); });
+          if (delivered > 0) std::get<1>(ports).try_put(delivered);
         }) {
     tbbflow::make_edge(source_, window_);
     tbbflow::make_edge(window_, announce_);
@@ -129,22 +130,44 @@ class Graph {
   }
 
   void run() {
-    source_.activate();
-    graph_.wait_for_all();
+    try {
+      source_.activate();
+      graph_.wait_for_all();
+    } catch (...) {  // of TBB, for want of memory: the nodes go before the graph and its tasks do
+      graph_.cancel();
+      throw;
+    }
     if (failure_) std::rethrow_exception(failure_);
   }
 
  private:
-  ItemPointer next_item(tbb::flow_control& control) {
+  // Keeps the first exception until the items in process are done. One that TBB saw would cancel
+  // the parallel loops inside these as well, which then go on with half of their results.
+  template <typename Step>
+  void unless_failed(const Step& step) {
+    if (failed_) return;
     try {
-      if (!stop_) {
-        if (std::unique_ptr<FlowItem> item = flow_.next()) return item;
-      }
+      step();
     } catch (...) {
-      failure_ = std::current_exception();
+      note_failure();
+      failed_ = true;
     }
-    control.stop();
-    return nullptr;
+  }
+
+  void note_failure() {
+    const std::lock_guard lock(failure_mutex_);
+    if (!failure_) failure_ = std::current_exception();
+  }
+
+  ItemPointer next_item(tbb::flow_control& control) {
+    ItemPointer item;
+    try {
+      if (!stop_ && !failed_) item = flow_.next();
+    } catch (...) {
+      note_failure();  // what came before is still done
+    }
+    if (!item) control.stop();
+    return item;
   }
 
   template <typename Ports>
@@ -158,6 +181,8 @@ class Graph {
   const std::atomic<bool>& stop_;
   Admission admission_;
   Delivery delivery_;
+  std::atomic<bool> failed_{false};
+  std::mutex failure_mutex_;
   std::exception_ptr failure_;
 
   tbbflow::graph graph_;

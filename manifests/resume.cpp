@@ -41,7 +41,10 @@ std::string options_text(const MarkOptions& options) {
 std::string canonical_name(const fs::path& path) {
   std::error_code error;
   const fs::path absolute = fs::absolute(path, error);
-  const fs::path directory = fs::weakly_canonical(absolute.parent_path(), error);
+  if (error) throw Error(ErrorCode::Unreadable, path, "", error.message());
+  fs::path directory = fs::weakly_canonical(absolute.parent_path(), error);
+  if (error)
+    directory = absolute.parent_path();  // as below a file, or where it is forbidden to look
   return (directory / absolute.filename()).lexically_normal().string();
 }
 

@@ -2,7 +2,7 @@
 // system calls: the one with this number, from 1, among all calls of these names, in whatever
 // process or thread. CALLS is a list such as "openat,write"; those that the dynamic loader makes do
 // not count. ACTION is
-//   count      only prints the number of calls on standard error
+//   count      only prints the number of calls of each name, and of all, on standard error
 //   kill       kills the command with all its processes before the call
 //   kill-one   kills the process that makes the call
 //   ENOSPC ..  lets the call fail so instead of doing anything; with a "+" at the end also every
@@ -139,13 +139,22 @@ class Tracer {
         code_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
       }
     }
-    if (fault_.action == "count") {
-      std::fprintf(stderr, "%llu\n", static_cast<unsigned long long>(seen_));
-    }
+    if (fault_.action == "count") print_counts();
     return code_;
   }
 
  private:
+  void print_counts() const {
+    const auto print = [](const char* name, std::uint64_t count) {
+      std::fprintf(stderr, "%s %llu\n", name, static_cast<unsigned long long>(count));
+    };
+    for (const auto& [name, call] : kCalls) {
+      const auto count = counts_.find(static_cast<std::uint64_t>(call));
+      if (count != counts_.end()) print(name.c_str(), count->second);
+    }
+    print("all", seen_);
+  }
+
   void stopped(pid_t thread, int status) {
     int signal = WSTOPSIG(status);
     const int event = status >> 16;
@@ -173,6 +182,7 @@ class Tracer {
     constexpr std::uint64_t kLoaderSize = 0x40000;
     if (info.instruction_pointer - loader_ < kLoaderSize) return;
     ++seen_;
+    ++counts_[info.entry.nr];
     if (seen_ != fault_.number && !(fault_.lasts && seen_ > fault_.number)) return;
     if (fault_.action == "kill") kill(0, SIGKILL);
     if (fault_.action == "kill-one") kill(process_of(thread), SIGKILL);
@@ -211,6 +221,7 @@ class Tracer {
   pid_t command_;
   std::uint64_t loader_ = 0;
   std::uint64_t seen_ = 0;
+  std::map<std::uint64_t, std::uint64_t> counts_;  // by call
   std::set<pid_t> known_;
   std::set<pid_t> failing_;
   int code_ = 1;
