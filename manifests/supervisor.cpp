@@ -150,7 +150,10 @@ class Supervision {
     if (getppid() != supervisor) _exit(1);
     for (const int number : {SIGINT, SIGTERM, SIGHUP}) std::signal(number, SIG_IGN);
     sigprocmask(SIG_SETMASK, &former_, nullptr);
-    std::exit(work_(order_));
+    const int code = work_(order_);
+    std::cout.flush();
+    std::cerr.flush();
+    _exit(code);  // what the process set up before it was the supervisor's, which will clean it up
   }
 
   End await(pid_t child) {
