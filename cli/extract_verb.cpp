@@ -151,7 +151,7 @@ int run_extract(const ExtractArguments& arguments) {
         [&](const ReadResult& result) { report_result(result, keys, arguments.json, tally); },
         order.board->stop());
     if (order.only) return kDone;
-    int code = tally.finish("files");
+    int code = tally.finish("file", "files");
     if (code == kDone && tally.counted(kCarriesNone) > 0) code = kNoMark;
     run.end(code);
     return code;

@@ -162,7 +162,7 @@ class MarkReport {
       std::cerr << "triglyph: not all pictures were drawn\n";
       all_drawn = false;
     }
-    const int code = tally_.finish("meshes");
+    const int code = tally_.finish("mesh", "meshes");
     return code == kDone && !all_drawn ? kSomeFailed : code;
   }
 

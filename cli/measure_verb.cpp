@@ -103,7 +103,7 @@ int run_measure(const MeasureArguments& arguments) {
         },
         order.board->stop());
     if (order.only) return kDone;
-    int code = is_run ? tally.finish("pairs") : tally.code();
+    int code = is_run ? tally.finish("pair", "pairs") : tally.code();
     if (!is_run && code == kSomeFailed) code = kUsageError;  // a mistake of the command
     run.end(code);
     return code;

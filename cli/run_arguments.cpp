@@ -144,7 +144,7 @@ std::uint64_t RunTally::counted(std::size_t kind) const {
   return board_.counters[kind];
 }
 
-int RunTally::finish(std::string_view noun) {
+int RunTally::finish(std::string_view one, std::string_view several) {
   bar_.clear();
   std::uint64_t all = 0;
   std::string parts;
@@ -157,7 +157,7 @@ int RunTally::finish(std::string_view noun) {
   const double seconds =
       std::max(1e-3, static_cast<double>(milliseconds() - board_.counters[kStarted]) / 1000);
   const double megabytes = static_cast<double>(board_.counters[kBytes]) / 1e6;
-  std::string line = std::to_string(all) + " " + std::string(noun);
+  std::string line = std::to_string(all) + " " + std::string(all == 1 ? one : several);
   if (!parts.empty()) line += ": " + parts;
   if (const std::uint64_t kept = board_.counters[kKept]; kept > 0) {
     line += " (" + std::to_string(kept) + " as an earlier run left them)";

@@ -70,8 +70,9 @@ class RunTally {
 
   void count(std::size_t kind, bool failed, bool kept, const std::filesystem::path& input);
 
-  // Prints the line unless the run is quiet, and returns the exit code.
-  [[nodiscard]] int finish(std::string_view noun);
+  // Prints the line unless the run is quiet, with the noun for one file or for several, and returns
+  // the exit code.
+  [[nodiscard]] int finish(std::string_view one, std::string_view several);
 
   // Returns the exit code: that of an interrupt, of a run that was given up or had failures, or
   // kDone.

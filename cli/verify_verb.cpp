@@ -164,7 +164,7 @@ int run_verify(const VerifyArguments& arguments) {
         },
         order.board->stop());
     if (order.only) return kDone;
-    const int code = tally.finish("files");
+    const int code = tally.finish("file", "files");
     run.end(code);
     return code;
   });

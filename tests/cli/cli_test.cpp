@@ -73,7 +73,7 @@ TEST_F(Cli, MarksExtractsAndVerifies) {
   const Result marked =
       run("mark a.obj --out o --message 'for Ada' --key-file k.key --records r.jsonl --json");
   EXPECT_EQ(marked.code, 0) << marked.err;
-  EXPECT_EQ(marked.err.find("1 meshes: 1 marked; ") != std::string::npos, true) << marked.err;
+  EXPECT_EQ(marked.err.rfind("triglyph: 1 mesh: 1 marked; ", 0), 0U) << marked.err;
   EXPECT_EQ(marked.out, test::read_all(folder_ / "r.jsonl"));
   const auto record = nlohmann::json::parse(marked.out);
   EXPECT_EQ(record["status"], "marked");
