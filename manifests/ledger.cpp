@@ -91,8 +91,11 @@ struct Ledger::Database {
   [[noreturn]] void fail() const {
     const int code = sqlite3_errcode(handle) & 0xff;
     const bool is_other = code == SQLITE_NOTADB || code == SQLITE_CORRUPT;
+    std::string reason = sqlite3_errmsg(handle);
+    // it may quote the file, which may be anything
+    for (char& c : reason) c = static_cast<unsigned char>(c) < 32 || c == 127 ? ' ' : c;
     throw Error(is_other ? ErrorCode::Malformed : ErrorCode::Unwritable, path, "",
-                std::string("the ledger: ") + sqlite3_errmsg(handle));
+                "the ledger: " + reason);
   }
 
   void execute(const char* sql) const {
