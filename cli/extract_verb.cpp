@@ -76,7 +76,7 @@ void print_json(const std::filesystem::path& path, const FileReading& reading,
 enum Kind : std::size_t { kCarries, kCarriesNone, kFailedFirst };
 
 std::vector<std::string_view> kinds_of_results() {
-  std::vector<std::string_view> kinds = {"with a mark", "without"};
+  std::vector<std::string_view> kinds = {"with a mark", "without a mark"};
   for (int status = 0; status <= static_cast<int>(FileStatus::Interrupted); ++status) {
     kinds.push_back(name_of(static_cast<FileStatus>(status)));
   }
@@ -101,6 +101,7 @@ void print_result(const ReadResult& result, std::span<const Key> keys, bool json
 // Prints a result as it arrives, and counts it.
 void report_result(const ReadResult& result, std::span<const Key> keys, bool json,
                    RunTally& tally) {
+  tally.clear_bar();
   print_result(result, keys, json);
   check_standard_output();  // nobody is there to read the rest
   const std::size_t kind = !result.reading

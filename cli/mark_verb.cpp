@@ -25,6 +25,8 @@ struct MarkArguments {
   fs::path pictures;  // directory
   bool json = false;
   bool dry_run = false;
+  bool companions = false;
+  bool keep_times = false;
   ResumeOptions resume;
   KeyArgument key;
   RunArguments run;
@@ -123,9 +125,7 @@ std::vector<std::string_view> status_names() {
 class MarkReport {
  public:
   MarkReport(const MarkArguments& arguments, const WorkOrder& order, std::size_t total)
-      : arguments_(arguments),
-        tally_(arguments.run, order, total, status_names()),
-        bar_(total, order.board->delivered, arguments.run.is_quiet()) {
+      : arguments_(arguments), tally_(arguments.run, order, total, status_names()) {
     if (!arguments.records.empty()) records_.emplace(arguments.records, !order.is_first);
     if (!arguments.pictures.empty()) pictures_.emplace(renderer_arguments(arguments));
     has_table_ = !arguments.json && !arguments.run.is_quiet();
@@ -138,7 +138,7 @@ class MarkReport {
 
   void delivered(const Record& record) {
     const bool failed = !record.file.is_marked();
-    bar_.clear();
+    tally_.clear_bar();
     if (arguments_.json) std::cout << to_line(to_json(record));
     if (has_table_) print_table_row(std::cout, record);
     std::cout.flush();  // what is delivered must outlive this worker
@@ -147,7 +147,6 @@ class MarkReport {
     }
     tally_.count(static_cast<std::size_t>(record.file.status), failed, record.is_kept,
                  record.file.mesh);
-    bar_.advance(failed);
     if (pictures_ && !failed && wants_picture(record)) {
       pictures_->draw(record.file.mesh, record.file.out, picture_of(record, arguments_));
     }
@@ -155,7 +154,7 @@ class MarkReport {
 
   // Waits for pictures, and returns the exit code.
   int finish(bool stopped) {
-    bar_.clear();
+    tally_.clear_bar();
     if (records_) records_->finish();
     if (pictures_ && stopped) pictures_->stop();
     bool all_drawn = true;
@@ -176,7 +175,6 @@ class MarkReport {
 
   const MarkArguments& arguments_;
   RunTally tally_;
-  ProgressBar bar_;
   std::optional<RecordsFile> records_;
   std::optional<RenderBatch> pictures_;
   bool has_table_ = false;
@@ -235,6 +233,8 @@ int mark_share(const MarkArguments& arguments, const Jobs& jobs, const Key& key,
   const Resume resume(ledger, run.id(), key, arguments.resume);
   RunContext context = arguments.run.context(order);
   context.resume = &resume;
+  context.copies_companions = arguments.companions;
+  context.keeps_times = arguments.keep_times;
   const auto source = jobs.open();
   const std::atomic<bool>& stop = order.board->stop();
   if (order.only) {
@@ -282,6 +282,10 @@ void add_mark_verb(CLI::App& app, Action& action) {
                  "outputs made from other meshes");
   verb->add_flag("--no-clobber", arguments->resume.no_clobber,
                  "Keep existing files that the ledger does not know");
+  verb->add_flag("--companions", arguments->companions,
+                 "Copy the material libraries and textures that a mesh names beside its output");
+  verb->add_flag("--keep-times", arguments->keep_times,
+                 "Give each output the modification time of its mesh");
   verb->add_flag("--dry-run", arguments->dry_run, "Print what would be done, and do nothing");
   arguments->key.add_to(*verb);
   arguments->run.add_to(*verb);

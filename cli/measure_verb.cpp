@@ -9,8 +9,8 @@
 #include "cli/run_arguments.h"
 #include "cli/screen.h"
 #include "cli/verbs.h"
-#include "engine/geometry/box.h"
 #include "engine/io/mesh_file.h"
+#include "engine/mesh/surface_diagonal.h"
 #include "engine/metric/comparison.h"
 #include "manifests/file_runs.h"
 #include "manifests/json_line.h"
@@ -52,7 +52,7 @@ nlohmann::ordered_json measured(const MeasureArguments& arguments, const MeshPai
   put_path(json, "original", pair.original);
   put_path(json, "marked", pair.marked);
   json["same_triangles"] = same;
-  json["diagonal"] = box_diagonal(first.positions);
+  json["diagonal"] = surface_diagonal(first);
   for (const std::string& metric : chosen_metrics(arguments, same)) {
     for (const auto& [name, value] : compare(first, second, metric, arguments.tolerance)) {
       json[name] = value;
@@ -96,6 +96,7 @@ int run_measure(const MeasureArguments& arguments) {
         pairs_of(arguments.inputs), [&](const MeshPair& pair) { return measured(arguments, pair); },
         arguments.run.context(order),
         [&](const PairResult& result) {
+          tally.clear_bar();
           print_measured(result, arguments.json, tally.counted(0) == 0);
           const bool failed = result.failure.has_value();
           tally.count(failed ? 1 : 0, failed, false, result.pair.original);

@@ -1,11 +1,86 @@
+#include <algorithm>
+#include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "cli/app.h"
 #include "cli/sibling.h"
 #include "cli/verbs.h"
+#include "engine/base/error.h"
+#include "manifests/pairs.h"
 
 namespace triglyph {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Returns the words before the first option: what is to be drawn.
+std::vector<std::string> leading_names(const std::vector<std::string>& words) {
+  const auto end = std::find_if(words.begin(), words.end(), [](const std::string& word) {
+    return word.size() > 1 && word.front() == '-';
+  });
+  return {words.begin(), end};
+}
+
+// Removes the option and its value from the words, and returns the value.
+std::optional<std::string> take_option(std::vector<std::string>& words, const std::string& name) {
+  for (auto word = words.begin(); word != words.end(); ++word) {
+    if (word->rfind(name + "=", 0) == 0) {
+      std::string value = word->substr(name.size() + 1);
+      words.erase(word);
+      return value;
+    }
+    if (*word != name || word + 1 == words.end()) continue;
+    std::string value = *(word + 1);
+    words.erase(word, word + 2);
+    return value;
+  }
+  return std::nullopt;
+}
+
+// Draws every pair into the folder that --out names; all other options are the renderer's.
+int draw_all(const std::vector<std::string>& names, std::vector<std::string> options) {
+  const std::optional<std::string> out = take_option(options, "--out");
+  if (!out) throw Error(ErrorCode::Usage, {}, "", "--out names the folder for the pictures");
+  const PairSource next = pairs_of(names);
+  options.insert(options.begin(), "--batch");
+  RenderBatch batch(options);
+  using Time = std::optional<fs::file_time_type>;
+  const auto time_of = [](const fs::path& path) -> Time {
+    std::error_code error;
+    const auto time = fs::last_write_time(path, error);
+    return error ? Time() : Time(time);
+  };
+  std::vector<std::pair<fs::path, Time>> pictures;  // with the times of former ones
+  while (const std::optional<MeshPair> pair = next()) {
+    const fs::path picture = fs::path(*out) / (pair->name.string() + ".png");
+    pictures.emplace_back(picture, time_of(picture));
+    batch.draw(pair->original, pair->marked, picture);
+  }
+  const bool all_well = batch.finish();
+  const auto drawn = static_cast<std::size_t>(
+      std::count_if(pictures.begin(), pictures.end(), [&](const auto& picture) {
+        const Time now = time_of(picture.first);
+        return now && now != picture.second;
+      }));
+  std::cerr << "triglyph: " << pictures.size() << " pairs: " << drawn << " drawn, "
+            << pictures.size() - drawn << " failed\n";
+  return all_well && drawn == pictures.size() ? kDone : kSomeFailed;
+}
+
+int run_render(const std::vector<std::string>& words) {
+  const std::vector<std::string> names = leading_names(words);
+  const bool names_many = names.size() == 2
+                              ? name_many_pairs(names)
+                              : names.size() == 1 && (fs::path(names[0]).extension() == ".jsonl" ||
+                                                      fs::path(names[0]).extension() == ".ledger");
+  if (!names_many) exec_renderer(words);
+  return draw_all(names, {words.begin() + static_cast<std::ptrdiff_t>(names.size()), words.end()});
+}
+
+}  // namespace
 
 void add_render_verb(CLI::App& app, Action& action) {
   CLI::App* verb = app.add_subcommand(
@@ -14,7 +89,7 @@ void add_render_verb(CLI::App& app, Action& action) {
   verb->prefix_command();
   verb->set_help_flag();
   verb->callback(
-      [&action, verb] { action = [rest = verb->remaining()]() -> int { exec_renderer(rest); }; });
+      [&action, verb] { action = [rest = verb->remaining()] { return run_render(rest); }; });
 }
 
 }  // namespace triglyph

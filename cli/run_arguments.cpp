@@ -120,7 +120,8 @@ RunTally::RunTally(const RunArguments& arguments, const WorkOrder& order, std::s
     : arguments_(arguments),
       board_(*order.board),
       limit_(arguments.failure_limit(total)),
-      kinds_(std::move(kinds)) {
+      kinds_(std::move(kinds)),
+      bar_(total, order.board->delivered, arguments.is_quiet()) {
   check(kinds_.size() <= kMostKinds, "a counter for every kind of result");
   if (order.is_first) board_.counters[kStarted] = milliseconds();
 }
@@ -132,6 +133,7 @@ void RunTally::count(std::size_t kind, bool failed, bool kept, const std::filesy
   const auto bytes = std::filesystem::file_size(input, error);
   if (!error) board_.counters[kBytes] += bytes;
   if (failed && ++board_.counters[kFailed] > limit_.value_or(~std::uint64_t{0})) board_.give_up();
+  bar_.advance(failed);
 }
 
 std::uint64_t RunTally::failed() const {
@@ -143,6 +145,7 @@ std::uint64_t RunTally::counted(std::size_t kind) const {
 }
 
 int RunTally::finish(std::string_view noun) {
+  bar_.clear();
   std::uint64_t all = 0;
   std::string parts;
   for (std::size_t kind = 0; kind < kinds_.size(); ++kind) {

@@ -13,6 +13,7 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/options.h"
+#include "cli/screen.h"
 #include "manifests/ledger.h"
 #include "manifests/run_context.h"
 
@@ -55,13 +56,17 @@ class RunArguments {
   std::filesystem::path ledger_;
 };
 
-// Counts the results of a run by kind, over all its workers; ends the run when too many failed; and
-// says in one line on standard error what came of it.
+// Counts the results of a run by kind, over all its workers, with a progress bar; ends the run when
+// too many failed; and says in one line on standard error what came of it.
 class RunTally {
  public:
-  // `kinds` names the results. The order and its board must outlive the tally.
+  // `kinds` names the results; `total` is the number of files, 0 if it is not known. The order and
+  // its board must outlive the tally.
   RunTally(const RunArguments& arguments, const WorkOrder& order, std::size_t total,
            std::vector<std::string_view> kinds);
+
+  // To be called before anything else is printed, which the bar would mix with.
+  void clear_bar() { bar_.clear(); }
 
   void count(std::size_t kind, bool failed, bool kept, const std::filesystem::path& input);
 
@@ -80,6 +85,7 @@ class RunTally {
   RunBoard& board_;
   std::optional<std::uint64_t> limit_;
   std::vector<std::string_view> kinds_;
+  ProgressBar bar_;
 };
 
 // A run in a ledger, from its begin to its end; does nothing where there is no ledger.

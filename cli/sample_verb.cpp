@@ -88,8 +88,8 @@ void add_sample_verb(CLI::App& app, Action& action) {
       ->check(CLI::Range(1, 1000000).description(""))
       ->type_name("N");
   verb->add_option("--triangles", arguments->triangles,
-                   "Approximate number of triangles of each mesh (12 to 20000000; default: 10000)")
-      ->check(CLI::Range(12, 20000000).description(""))
+                   "Number of triangles of each mesh, within 10 % (80 to 20000000; default: 10000)")
+      ->check(CLI::Range(80, 20000000).description(""))
       ->type_name("N");
   verb->add_option("--seed", arguments->seed,
                    "Seed of the random numbers; the same seed gives the same meshes (default: 1)")

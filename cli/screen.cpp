@@ -16,7 +16,11 @@ double now_s() {
 }
 
 std::string shortened(const std::string& text, std::size_t width) {
-  return text.size() <= width ? text : "..." + text.substr(text.size() - (width - 3));
+  if (text.size() <= width) return text;
+  std::size_t begin = text.size() - (width - 3);
+  // not in the middle of a character of UTF-8
+  while (begin < text.size() && (static_cast<unsigned char>(text[begin]) & 0xc0U) == 0x80) ++begin;
+  return "..." + text.substr(begin);
 }
 
 template <typename... Values>
@@ -62,17 +66,23 @@ void ProgressBar::advance(bool failed) {
   ++done_;
   failed_ += failed ? 1 : 0;
   const double now = now_s();
-  if (!visible_ || (now - last_draw_s_ < 0.1 && done_ < total_)) return;
+  if (!visible_ || (now - last_draw_s_ < 0.1 && done_ != total_)) return;
   last_draw_s_ = now;
   draw();
 }
 
 void ProgressBar::draw() {
-  const double share = total_ == 0 ? 1 : static_cast<double>(done_) / static_cast<double>(total_);
-  const std::string bar(static_cast<std::size_t>(30 * share), '#');
+  if (total_ == 0) {
+    std::fputs(format("\r\033[K%zu files, %zu failed", done_, failed_).c_str(), stderr);
+    std::fflush(stderr);
+    return;
+  }
+  const double share = static_cast<double>(done_) / static_cast<double>(total_);
+  const std::string bar(static_cast<std::size_t>(30 * std::min(share, 1.0)), '#');
   const double elapsed = now_s() - start_s_;
-  std::fputs(format("\r\033[K[%-30s] %zu/%zu meshes, %zu failed, %.0f s left", bar.c_str(), done_,
-                    total_, failed_, share > 0 ? elapsed * (1 - share) / share : 0.0)
+  const double left = share > 0 ? elapsed * (1 - share) / share : 0;
+  std::fputs(format("\r\033[K[%-30s] %zu/%zu files, %zu failed, %.0f s left", bar.c_str(), done_,
+                    total_, failed_, std::max(left, 0.0))
                  .c_str(),
              stderr);
   std::fflush(stderr);

@@ -18,7 +18,7 @@ void print_table_row(std::ostream& out, const Record& record);
 // error is a terminal.
 class ProgressBar {
  public:
-  // Starts at `done`, the number of meshes that are done already.
+  // Starts at `done`, the number of files that are done already. A `total` of 0 is not known.
   ProgressBar(std::size_t total, std::size_t done, bool quiet);
   ~ProgressBar();
   void advance(bool failed);

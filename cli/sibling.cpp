@@ -6,11 +6,11 @@
 #include <sstream>
 
 #include <fcntl.h>
-#include <nlohmann/json.hpp>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "engine/base/error.h"
+#include "manifests/json_line.h"
 
 namespace triglyph {
 namespace {
@@ -87,10 +87,11 @@ RenderBatch::~RenderBatch() {
 }
 
 void RenderBatch::draw(const fs::path& original, const fs::path& marked, const fs::path& out) {
-  const nlohmann::json job = {
-      {"original", original.string()}, {"marked", marked.string()}, {"out", out.string()}};
-  const std::string line =
-      job.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  nlohmann::ordered_json job;
+  put_path(job, "original", original);
+  put_path(job, "marked", marked);
+  put_path(job, "out", out);
+  const std::string line = to_line(job);
   std::size_t sent = 0;
   while (sent < line.size()) {
     const ssize_t count = write(pipe_, line.data() + sent, line.size() - sent);

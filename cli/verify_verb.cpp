@@ -153,6 +153,7 @@ int run_verify(const VerifyArguments& arguments) {
     verify_files(
         next, key, arguments.detail, arguments.run.context(order),
         [&](const Record& record, const Verification& found) {
+          tally.clear_bar();
           print(arguments, record, found);
           check_standard_output();  // nobody is there to read the rest
           const bool is_unknown = record.file.key_fingerprint.empty() && record.file.parts == 0 &&

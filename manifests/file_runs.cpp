@@ -3,6 +3,7 @@
 #include <new>
 
 #include "engine/base/error.h"
+#include "engine/base/stop.h"
 #include "manifests/share.h"
 
 namespace triglyph {
@@ -27,6 +28,8 @@ void attempt(FileItem& item, const Work& work) {
     work();
   } catch (const Error& error) {
     fail(file_status(name_of(error.code())).value_or(FileStatus::Failed), error.what());
+  } catch (const Stopped&) {  // then there is no result
+    return;
   } catch (const std::bad_alloc&) {
     fail(FileStatus::Failed, item.file.string() + ": not enough memory");
   } catch (const std::exception& error) {
@@ -39,6 +42,7 @@ void attempt(FileItem& item, const Work& work) {
 template <typename Item, typename Source, typename Work, typename Deliver>
 void run_files(const Source& source, const Work& work, const Deliver& deliver,
                const RunContext& context, const std::atomic<bool>& stop) {
+  const StopScope scope(stop);
   const Share share(context);
   std::size_t next = 0;
   Flow flow;

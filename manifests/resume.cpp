@@ -4,7 +4,7 @@
 #include <array>
 
 #include "engine/base/error.h"
-#include "engine/io/mapped_file.h"
+#include "engine/io/file_bytes.h"
 #include "manifests/json_line.h"
 
 namespace triglyph {
@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 // Returns the hash of the file's content, or nothing if it cannot be read.
 std::optional<std::string> hash_of_file(const fs::path& path) {
   try {
-    return content_hash(MappedFile::open(path).bytes());
+    return content_hash(FileBytes::open(path).bytes());
   } catch (const Error&) {
     return std::nullopt;
   }

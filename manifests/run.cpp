@@ -2,7 +2,10 @@
 
 #include <sys/resource.h>
 
+#include "engine/base/error.h"
 #include "engine/base/output_file.h"
+#include "engine/base/stop.h"
+#include "manifests/companions.h"
 #include "manifests/share.h"
 
 namespace triglyph {
@@ -43,8 +46,12 @@ class MarkWork {
     try {
       if (!stop_ && decide(item, marking)) return;
       mark(item, marking);
-    } catch (const std::exception& error) {  // of the ledger: then there must be no output
-      marking.refuse(FileStatus::Unwritable, error.what());
+    } catch (const Error& error) {  // of the ledger or a companion: then there must be no output
+      marking.refuse(file_status(name_of(error.code())).value_or(FileStatus::Failed), error.what());
+    } catch (const Stopped&) {
+      marking.interrupt();
+    } catch (const std::exception& error) {
+      marking.refuse(FileStatus::Failed, error.what());
     }
     describe(item, marking);
   }
@@ -89,12 +96,15 @@ class MarkWork {
     marking.read_back(key_);
     // a mesh that was read back is nearly done, so it is finished
     marking.measure();
+    if (context_.copies_companions && marking.result().is_marked()) {
+      copy_companions(item.job.mesh, item.job.out);
+    }
     describe(item, marking);
     const bool is_worth_a_line = item.record.file.status != FileStatus::Interrupted &&
                                  item.record.file.status != FileStatus::Exists;
     if (context_.resume != nullptr && is_worth_a_line) context_.resume->enter(item.record);
     if (!item.record.file.is_marked()) return;
-    marking.publish();
+    marking.publish(context_.keeps_times);
     if (marking.result().is_marked() || context_.resume == nullptr) return;
     describe(item, marking);
     context_.resume->enter(item.record);
@@ -122,6 +132,7 @@ class MarkWork {
 
 void run_jobs(JobSource& jobs, const Key& key, const RunContext& context, const RunEvents& events,
               const std::atomic<bool>& stop) {
+  const StopScope scope(stop);
   const MarkWork work(key, context, stop);
   const Share share(context);
   Flow flow;

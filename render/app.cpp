@@ -13,6 +13,7 @@
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
 #include "engine/io/mesh_file.h"
+#include "engine/message/key.h"
 #include "render/arguments.h"
 #include "render/colours.h"
 #include "render/comparison.h"
@@ -75,7 +76,16 @@ void draw_pair(const RenderArguments& arguments, const fs::path& original, const
 
 volatile std::sig_atomic_t stop_requested = 0;
 
-// Reads one JSON object per line from standard input: {"original", "marked", "out"}.
+// Returns a path of a job: byte for byte if it is there in hexadecimal, since JSON holds UTF-8
+// alone.
+fs::path path_in(const nlohmann::json& job, const std::string& key) {
+  if (!job.contains(key + "_bytes")) return job.at(key).get<std::string>();
+  const auto bytes = from_hex(job.at(key + "_bytes").get<std::string>());
+  return std::string(bytes.begin(), bytes.end());
+}
+
+// Reads one JSON object per line from standard input: {"original", "marked", "out"}, each also as
+// "<key>_bytes".
 int draw_batch(const RenderArguments& arguments) {
   std::signal(SIGTERM, [](int) {
     stop_requested = 1;
@@ -86,8 +96,7 @@ int draw_batch(const RenderArguments& arguments) {
     ++number;
     try {
       const auto job = nlohmann::json::parse(line);
-      draw_pair(arguments, job.at("original").get<std::string>(),
-                job.at("marked").get<std::string>(), job.at("out").get<std::string>());
+      draw_pair(arguments, path_in(job, "original"), path_in(job, "marked"), path_in(job, "out"));
     } catch (const std::exception& error) {
       std::cerr << "triglyph-render: line " << number << ": " << error.what() << "\n";
       code = kSomeFailed;

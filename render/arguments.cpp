@@ -25,7 +25,10 @@ std::unique_ptr<CLI::App> make_render_app(RenderArguments& arguments) {
   auto parser = std::make_unique<CLI::App>("Draws meshes side by side, without a display.",
                                            "triglyph render");
   CLI::App& app = *parser;
-  app.add_option("original", arguments.original, "Original mesh")->type_name("MESH");
+  app.add_option("original", arguments.original,
+                 "Original mesh; or two folders, records or a ledger, of which every pair is drawn "
+                 "into the folder that --out names")
+      ->type_name("MESH|DIR|RECORDS");
   app.add_option("marked", arguments.marked, "Mesh to compare with the original")
       ->type_name("MESH");
   app.add_option("--out", arguments.out, "Picture to write: .png, .jpg or .exr")->type_name("FILE");

@@ -7,9 +7,9 @@
 
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
-#include "engine/geometry/box.h"
 #include "engine/geometry/spatial_index.h"
 #include "engine/mesh/edge_length.h"
+#include "engine/mesh/surface_diagonal.h"
 #include "engine/metric/comparison.h"
 #include "engine/metric/hausdorff.h"
 #include "render/colours.h"
@@ -55,7 +55,7 @@ class Comparison {
         marked_(marked),
         options_(options),
         camera_(camera_for(original, options)),
-        diagonal_(box_diagonal(original.positions)),
+        diagonal_(surface_diagonal(original)),
         has_same_triangles_(have_same_triangles(original, marked)) {}
 
   Panel panel(const std::string& name) {

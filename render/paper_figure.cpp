@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "engine/geometry/box.h"
 #include "engine/marking/mark.h"
 #include "engine/mesh/edge_graph.h"
+#include "engine/mesh/surface_diagonal.h"
 #include "engine/metric/hausdorff.h"
 #include "engine/scheme/registry.h"
 #include "render/colours.h"
@@ -98,7 +98,7 @@ class PaperFigure {
     const Mesh after{marking.positions, mesh_.triangles};
     Scene scene = scene_of(after);
     show_units(after, marking, scene);
-    const double diagonal = box_diagonal(mesh_.positions);
+    const double diagonal = surface_diagonal(mesh_);
     const double distance = hausdorff_of_move(mesh_.triangles, mesh_.positions, after.positions,
                                               kHausdorffTolerance * diagonal)
                                 .symmetric();

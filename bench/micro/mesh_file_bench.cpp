@@ -14,7 +14,7 @@
 #include <benchmark/benchmark.h>
 
 #include "engine/io/export_mesh.h"
-#include "engine/io/mapped_file.h"
+#include "engine/io/file_bytes.h"
 #include "engine/io/mesh_file.h"
 #include "engine/io/readers.h"
 
@@ -67,7 +67,7 @@ void count_bytes(benchmark::State& state, std::size_t bytes) {
 
 // The reader alone, on one thread.
 void BM_ScanObj(benchmark::State& state) {
-  const auto mapped = triglyph::MappedFile::open(large_obj());
+  const auto mapped = triglyph::FileBytes::open(large_obj());
   for (auto _ : state) {
     benchmark::DoNotOptimize(triglyph::read_obj({mapped.bytes(), large_obj()}));
   }

@@ -18,6 +18,7 @@
 #include "engine/assignment/least_sum.h"
 #include "engine/assignment/matching.h"
 #include "engine/base/parallel.h"
+#include "engine/base/stop.h"
 
 namespace triglyph {
 namespace {
@@ -164,6 +165,7 @@ class Forest {
       if (threshold_.matching.unserved[word] > 0) add_word(word);
     }
     for (;;) {
+      stop_point();
       float least = kInfeasible;
       for (const float slack : slack_) least = slack >= 0 && slack < least ? slack : least;
       if (least == kInfeasible) return false;
@@ -187,6 +189,7 @@ class Forest {
   static constexpr float kIsIn = -1;  // slack of a unit in the forest: below every cost
 
   void add_word(std::uint32_t word) {
+    stop_point();
     word_is_in_[word] = 1;
     const float* column = costs_.column(word).data();
     for (std::uint32_t unit = 0; unit < costs_.units; ++unit) {

@@ -11,6 +11,7 @@
 
 #include "engine/assignment/assignment.h"
 #include "engine/base/parallel.h"
+#include "engine/base/stop.h"
 
 namespace triglyph {
 namespace {
@@ -41,6 +42,7 @@ Layers find_layers(const PairGraph& graph, const Matching& matching,
   }
   for (std::size_t head = 0; head < queue.size(); ++head) {
     const std::uint32_t word = queue[head];
+    stop_point();
     const std::uint32_t layer = layers.layer_of_word[word];
     if (layer > layers.last_layer) break;
     const auto row = graph.row(word);
@@ -77,6 +79,7 @@ class PathFinder {
     std::vector<Step>& path = path_;
     path.assign(1, {source, 0});
     while (!path.empty()) {
+      stop_point();
       const std::uint32_t unit = next_unit(path.back().word);
       if (unit == kUnreached) {
         path.pop_back();
@@ -135,6 +138,7 @@ void match_greedily(const PairGraph& graph, Matching& matching) {
     if (matching.word_of_unit[unit] != kNoWord) free[unit / 64] &= ~(std::uint64_t{1} << unit % 64);
   }
   for (std::uint32_t word = 0; word < graph.words(); ++word) {
+    stop_point();
     const auto row = graph.row(word);
     for (std::size_t block = 0; block < row.size() && matching.unserved[word] > 0; ++block) {
       std::uint64_t open = row[block] & free[block];

@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "engine/base/error.h"
+#include "engine/base/stop.h"
 
 namespace triglyph {
 namespace {
@@ -117,6 +118,7 @@ void PathSearch::serve(std::uint32_t source) {
   const auto count = static_cast<std::uint32_t>(state_.words.size());
   reach(source, 0, kNoIndex, kNoIndex);
   while (!heap_.empty()) {
+    stop_point();
     std::pop_heap(heap_.begin(), heap_.end());
     const Event event = heap_.back();
     heap_.pop_back();

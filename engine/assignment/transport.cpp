@@ -24,6 +24,7 @@
 #include "engine/assignment/transport_state.h"
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
+#include "engine/base/stop.h"
 
 namespace triglyph {
 namespace {
@@ -131,6 +132,7 @@ void bid_in_turns(TransportState& state, double step, std::size_t bids_per_word)
   Offers offers;
   std::size_t refreshed = 0;
   for (std::size_t head = 0; head < queue.size() && head < most; ++head) {
+    stop_point();
     if (head == refreshed) {
       std::vector<std::uint32_t> next(
           queue.begin() + static_cast<std::ptrdiff_t>(head),

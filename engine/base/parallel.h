@@ -16,6 +16,8 @@
 #include <tbb/parallel_sort.h>
 #include <tbb/task_arena.h>
 
+#include "engine/base/stop.h"
+
 namespace triglyph {
 
 // Indices per block. Fixed, so that the order of a fold depends on the input size alone; large
@@ -24,17 +26,24 @@ inline constexpr std::size_t kBlock = 4096;
 
 // Calls body(i) once for every i in [0, n), in parallel, in tasks of about `grain` consecutive
 // indices or more. An exception cancels the loop and is rethrown here, so a loop over meshes must
-// catch inside its body.
+// catch inside its body. Throws Stopped, at the latest after `grain` more indices a thread, once
+// stop_point() does.
 template <typename Body>
 void parallel_for(std::size_t n, const Body& body, std::size_t grain = 1) {
   if (n <= grain) {
+    if (n > 0) stop_point();
     for (std::size_t i = 0; i < n; ++i) body(i);
     return;
   }
   tbb::this_task_arena::isolate([&] {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, grain),
                       [&](const tbb::blocked_range<std::size_t>& range) {
-                        for (std::size_t i = range.begin(); i < range.end(); ++i) body(i);
+                        // a range can hold a large share of the loop
+                        for (std::size_t i = range.begin(); i < range.end();) {
+                          stop_point();
+                          const std::size_t end = std::min(range.end(), i + grain);
+                          for (; i < end; ++i) body(i);
+                        }
                       });
   });
 }

@@ -9,7 +9,7 @@
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
 #include "engine/io/byte_parts.h"
-#include "engine/io/mapped_file.h"
+#include "engine/io/file_bytes.h"
 #include "engine/io/number_text.h"
 #include "engine/io/readers.h"
 #include "engine/mesh/triangulate.h"
@@ -46,8 +46,8 @@ std::string_view number_at(std::span<const char> bytes, std::uint64_t begin) {
 }  // namespace
 
 struct MeshFile::Content {
-  MappedFile mapped;
-  std::vector<char> owned;  // instead of `mapped`, for files in memory
+  FileBytes file;
+  std::vector<char> owned;  // instead of `file`, for files in memory
   std::span<const char> bytes;
   FileFormat format = FileFormat::Obj;
   CoordinatePlaces places;
@@ -181,8 +181,8 @@ std::string_view name_of(FileFormat format) noexcept {
 
 MeshFile MeshFile::open(const std::filesystem::path& path) {
   auto content = std::make_unique<Content>();
-  content->mapped = MappedFile::open(path);
-  content->bytes = content->mapped.bytes();
+  content->file = FileBytes::open(path);
+  content->bytes = content->file.bytes();
   content->fill(path);
   return MeshFile(std::move(content));
 }

@@ -4,6 +4,7 @@
 
 #include "engine/base/parallel.h"
 #include "engine/base/random.h"
+#include "engine/base/stop.h"
 
 namespace triglyph {
 namespace {
@@ -37,6 +38,7 @@ GraphBlocks::GraphBlocks(const ConflictGraph& graph, std::uint32_t size, std::ui
   for (std::uint32_t i = 0; i < count; ++i) {
     std::uint32_t root = (start + i) % count;
     while (root != kNoIndex && block_of[root] == kNoIndex) {
+      stop_point();
       const auto block = static_cast<std::uint32_t>(this->size());
       const std::size_t first = units_.size();
       block_of[root] = block;

@@ -17,6 +17,7 @@
 
 #include "engine/base/parallel.h"
 #include "engine/base/random.h"
+#include "engine/base/stop.h"
 #include "engine/layout/budget.h"
 #include "engine/layout/conflict_graph.h"
 
@@ -65,6 +66,7 @@ class Walker {
     const double uphill = static_cast<double>(movable_.size()) * std::exp(-1 / temperature);
     fill();
     for (std::uint64_t step = 0; step < steps; ++step) {
+      stop_point();
       const auto swaps = static_cast<double>(swaps_.size());
       const double pick = unit_random() * (std::max(swaps, 1.0) + uphill);
       if (pick < swaps) {

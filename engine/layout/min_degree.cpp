@@ -3,6 +3,7 @@
 // bounded-degree graphs. Algorithmica 18 (1997).
 #include <algorithm>
 
+#include "engine/base/stop.h"
 #include "engine/layout/layout.h"
 #include "engine/layout/random_order.h"
 
@@ -67,6 +68,7 @@ std::vector<std::uint32_t> min_degree_layout(const Conflicts& conflicts,
   std::vector<std::uint32_t> gone_from(conflicts.list_count(), 0);
   std::vector<std::uint32_t> chosen, dropped, lists, touched;
   for (std::uint32_t unit = queue.front(); unit != kNoUnit; unit = queue.front()) {
+    stop_point();
     chosen.push_back(unit);
     present[unit] = 0;
     queue.remove(unit);

@@ -5,6 +5,7 @@
 
 #include "engine/base/parallel.h"
 #include "engine/base/random.h"
+#include "engine/base/stop.h"
 
 namespace triglyph {
 
@@ -27,6 +28,7 @@ std::vector<std::uint32_t> fit_in_order(const Conflicts& conflicts,
   std::vector<char> blocked(conflicts.size(), 0);
   for (const std::uint32_t unit : order) {
     if (blocked[unit] != 0) continue;
+    stop_point();
     chosen.push_back(unit);
     conflicts.for_each_neighbour(unit, [&](std::uint32_t other) { blocked[other] = 1; });
   }

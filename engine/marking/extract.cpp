@@ -1,11 +1,19 @@
 #include "engine/marking/extract.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/message/decode.h"
 #include "engine/scheme/registry.h"
 
 namespace triglyph {
+namespace {
+
+// Words that chance repeats so seldom in a sample point to a mark; reading all of the mesh for
+// nothing once in a hundred times costs little.
+constexpr double kFewByChance = 0.01;
+
+}  // namespace
 
 Extraction extract(const BoundScheme& scheme, const WordCode& code, int doubtful_parts) {
   Extraction result;
@@ -28,6 +36,28 @@ Extraction extract(const BoundScheme& scheme, const WordCode& code, int doubtful
     result.agreement = std::min(result.agreement, votes.agreement(index));
   }
   return result;
+}
+
+bool has_repeated_words(std::span<const Reading> readings, const WordFormat& format) {
+  std::vector<std::uint64_t> words;
+  words.reserve(readings.size());
+  for (const Reading& reading : readings) {
+    words.push_back(std::uint64_t{reading.word.subscript} << 32 | reading.word.part);
+  }
+  std::sort(words.begin(), words.end());
+  // the expected number of words that random readings hold `repeats` times or more
+  const double all = std::ldexp(1.0, format.subscript_bits + format.part_bits);
+  const double mean = static_cast<double>(words.size()) / all;
+  double expected = all * mean;
+  std::size_t repeats = 1;
+  while (expected > kFewByChance || repeats < 2) {
+    ++repeats;
+    expected *= mean / static_cast<double>(repeats);
+  }
+  for (std::size_t i = repeats - 1; i < words.size(); ++i) {
+    if (words[i] == words[i + 1 - repeats]) return true;
+  }
+  return false;
 }
 
 Extraction extract(const Surface& surface, const Encoding& encoding, const Key& key) {

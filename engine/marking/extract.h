@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "engine/marking/options.h"
@@ -31,5 +32,11 @@ struct Extraction {
 // Extracts with the scheme and the word format of an encoding. Throws Error Usage for an unknown
 // scheme or options out of range.
 [[nodiscard]] Extraction extract(const Surface& surface, const Encoding& encoding, const Key& key);
+
+// Says whether readings of a sample look like those of a mesh that carries a message, in which
+// words repeat: some word is read more often than chance would let any be. Wrong in about one of a
+// hundred unmarked meshes, more often in one whose parts repeat, and of messages with few units a
+// part. O(readings).
+[[nodiscard]] bool has_repeated_words(std::span<const Reading> readings, const WordFormat& format);
 
 }  // namespace triglyph

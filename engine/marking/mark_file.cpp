@@ -9,11 +9,13 @@
 #include "engine/base/error.h"
 #include "engine/base/output_file.h"
 #include "engine/base/parallel.h"
-#include "engine/geometry/box.h"
-#include "engine/io/mapped_file.h"
+#include "engine/base/stop.h"
+#include "engine/io/file_bytes.h"
 #include "engine/marking/extract.h"
 #include "engine/marking/mark.h"
 #include "engine/marking/readable.h"
+#include "engine/marking/refusal.h"
+#include "engine/mesh/surface_diagonal.h"
 #include "engine/metric/deformation.h"
 #include "engine/metric/hausdorff.h"
 #include "engine/scheme/registry.h"
@@ -42,6 +44,23 @@ FileStatus status_of(ErrorCode code) {
       return FileStatus::Unwritable;
     case ErrorCode::Usage:
       return FileStatus::Usage;
+  }
+  return FileStatus::Failed;
+}
+
+// Returns nothing for a mesh that was marked.
+std::optional<FileStatus> refused_status(MarkStatus status) {
+  switch (status) {
+    case MarkStatus::Marked:
+      return std::nullopt;
+    case MarkStatus::TooSmall:
+      return FileStatus::TooSmall;
+    case MarkStatus::TooCoarse:
+      return FileStatus::TooCoarse;
+    case MarkStatus::TooVisible:
+      return FileStatus::TooVisible;
+    case MarkStatus::AlreadyMarked:
+      return FileStatus::AlreadyMarked;
   }
   return FileStatus::Failed;
 }
@@ -107,11 +126,14 @@ void FileMarking::run_stage(double& seconds, const Stage& stage) noexcept {
     result_.status = status_of(error.code());
     result_.error = error.path().empty() ? result_.mesh.string() + ": " + error.what()
                                          : std::string(error.what());
+  } catch (const Stopped& stopped) {
+    end(FileStatus::Interrupted, stopped.what());
   } catch (const std::bad_alloc&) {
     end(FileStatus::Failed, "not enough memory");
   } catch (const std::exception& error) {
     end(FileStatus::Failed, error.what());
   }
+  if (!result_.is_marked()) result_.output_hash.clear();
   seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
@@ -159,14 +181,8 @@ void FileMarking::mark(const Key& key) noexcept {
     work_->marking = triglyph::mark(surface, result_.request.payload, key, options, rounding,
                                     file.number_step());
     describe(work_->marking);
-    if (work_->marking.status == MarkStatus::TooSmall) {
-      end(FileStatus::TooSmall, std::to_string(result_.units_valid) + " units carry " +
-                                    std::to_string(work_->marking.parts_carried) +
-                                    " of the message's " + std::to_string(result_.parts) +
-                                    " parts");
-    } else if (work_->marking.status == MarkStatus::TooCoarse) {
-      end(FileStatus::TooCoarse,
-          "numbers " + std::to_string(file.number_step()) + " apart are too coarse for the mark");
+    if (const auto status = refused_status(work_->marking.status)) {
+      end(*status, refusal(work_->marking, result_.request, file.number_step()));
     }
   });
 }
@@ -195,8 +211,8 @@ void FileMarking::read_back(const Key& key) noexcept {
     if (!verified) {
       end(FileStatus::NotVerified, "the mark could not be read back (" +
                                        std::to_string(result_.units_embedded) + " of " +
-                                       std::to_string(result_.units_assigned) + " units)");
-      result_.output_hash.clear();
+                                       std::to_string(result_.units_assigned) +
+                                       " units): try another --scheme or a larger --step");
       return;
     }
     if (result_.request.options.detail) result_.units = std::move(embedded);
@@ -210,7 +226,7 @@ void FileMarking::measure() noexcept {
     const Displacement moved = displacement(mesh.positions, marked);
     result_.displacement_max = moved.max;
     result_.displacement_rms = moved.rms;
-    const double diagonal = box_diagonal(mesh.positions);
+    const double diagonal = surface_diagonal(mesh);
     result_.hausdorff =
         hausdorff_of_move(mesh.triangles, mesh.positions, marked, kHausdorffTolerance * diagonal)
             .symmetric();
@@ -218,16 +234,27 @@ void FileMarking::measure() noexcept {
   });
 }
 
-void FileMarking::publish() noexcept {
+void FileMarking::publish(bool keeps_time) noexcept {
   double seconds = 0;
-  run_stage(seconds, [&] { work_->output->commit(); });
+  run_stage(seconds, [&] {
+    const std::filesystem::path& output = work_->output->temporary_path();
+    // a file system without permissions or times is no reason to refuse
+    std::error_code ignored;
+    const auto status = std::filesystem::status(result_.mesh, ignored);
+    if (!ignored) std::filesystem::permissions(output, status.permissions(), ignored);
+    if (keeps_time) {
+      const auto time = std::filesystem::last_write_time(result_.mesh, ignored);
+      if (!ignored) std::filesystem::last_write_time(output, time, ignored);
+    }
+    work_->output->commit();
+  });
   result_.times.write += seconds;
   work_.reset();
 }
 
 void FileMarking::note_input_hash() noexcept {
   try {
-    result_.input_hash = content_hash(MappedFile::open(result_.mesh).bytes());
+    result_.input_hash = content_hash(FileBytes::open(result_.mesh).bytes());
   } catch (const std::exception&) {
     result_.input_hash.clear();
   }

@@ -68,7 +68,7 @@ struct MarkedFile {
   double cost_max = 0;               // of the assignment, model units
   double cost_sum = 0;               // likewise
   double hausdorff = 0;              // symmetric, model units
-  double hausdorff_rel_diag = 0;     // relative to the bounding box's diagonal
+  double hausdorff_rel_diag = 0;     // relative to the surface's diagonal
   double displacement_max = 0;       // model units
   double displacement_rms = 0;       // model units, over all points
   // The embedded units, ascending by anchor; only with MarkOptions::detail.
@@ -96,7 +96,9 @@ class FileMarking {
   void write() noexcept;
   void read_back(const Key& key) noexcept;  // from the file that was written
   void measure() noexcept;
-  void publish() noexcept;  // gives the output its name, and releases everything but the result
+  // Gives the output its name and the permissions of the mesh's file, on request also its
+  // modification time, and releases everything but the result.
+  void publish(bool keeps_time = false) noexcept;
 
   // Enters the hash of the mesh's file into the result, if the file can be read; load() does so
   // too.

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "engine/message/words.h"
@@ -12,8 +13,10 @@ namespace triglyph {
 
 enum class MarkStatus {
   Marked,
-  TooSmall,   // fewer units than parts, or a part without a unit that can carry it
-  TooCoarse,  // the numbers of the file are too far apart for the quantiser cells
+  TooSmall,       // fewer units than parts, or a part without a unit that can carry it
+  TooCoarse,      // the numbers of the file are too far apart for the quantiser cells
+  AlreadyMarked,  // the mesh carries a mark of this key already, see Marking::found
+  TooVisible,     // some part has no unit that can carry it within MarkOptions::max_move_percent
 };
 
 // A unit that carries a word after rounding and settling.
@@ -24,6 +27,22 @@ struct Carrier {
   bool operator==(const Carrier&) const = default;
 };
 
+// What would help a mesh that is refused. Each was tried on the mesh with success; 0 where nothing
+// was found, or not looked for.
+struct WayOut {
+  std::size_t message_bytes = 0;          // the longest beginning of the message that fits
+  std::uint32_t least_parts_carried = 0;  // of the shortest beginning that was tried, if none fits
+  double move_needed_percent = 0;         // the least move that some part needs
+  double max_move_percent = 0;            // the least limit of moves that does
+  double step = 0;                        // the width of cells that does
+};
+
+// A mark that a mesh carries.
+struct FoundMessage {
+  Message message;
+  std::uint32_t agreeing = 0;  // units whose word is exactly that of the message
+};
+
 struct Marking {
   MarkStatus status = MarkStatus::Marked;
   std::vector<Vec3> positions;      // of all points, as the file will hold them
@@ -32,14 +51,16 @@ struct Marking {
   std::vector<Carrier> carriers;    // ascending by anchor
   std::uint32_t parts_carried = 0;  // parts with at least one carrier
   std::uint32_t candidates = 0;
-  std::uint32_t units_valid = 0;     // chosen by the layout
-  std::uint32_t units_bound = 0;     // upper bound of the size of any layout
-  std::uint32_t units_assigned = 0;  // given a word that they can carry
-  std::uint32_t units_dropped = 0;   // restored, because of rounding or a flipped face
-  double cost_max = 0;               // of the assignment, model units
-  double cost_sum = 0;               // likewise
-  double layout_seconds = 0;         // step 1: candidates, conflicts, layout
-  double assign_seconds = 0;         // step 2: costs and assignment, all rounds
+  std::uint32_t units_valid = 0;      // chosen by the layout
+  std::uint32_t units_bound = 0;      // upper bound of the size of any layout
+  std::uint32_t units_assigned = 0;   // given a word that they can carry
+  std::uint32_t units_dropped = 0;    // restored, because of rounding or a flipped face
+  double cost_max = 0;                // of the assignment, model units
+  double cost_sum = 0;                // likewise
+  double layout_seconds = 0;          // step 1: candidates, conflicts, layout
+  double assign_seconds = 0;          // step 2: costs and assignment, all rounds
+  std::optional<FoundMessage> found;  // only of a mesh that is already marked
+  WayOut way_out;                     // unless marked
 };
 
 // Returns the nearest point that the output can represent.

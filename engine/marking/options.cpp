@@ -25,7 +25,7 @@ OptionSpec scheme_spec() {
 }
 
 std::vector<OptionSpec> message_specs() {
-  return {{"message", OptionKind::Text, "", {}, {}, "triglyph", "Message to hide, 1 to 256 bytes"},
+  return {{"message", OptionKind::Text, "", {}, {}, "", "Message to hide, 1 to 256 bytes"},
           {"message_hex", OptionKind::Text, "", {}, {}, "", "Message in hexadecimal"},
           {"fill",
            OptionKind::Flag,
@@ -89,12 +89,16 @@ OptionTable<Options> make_table() {
       count_option<Options>("redundancy", &Options::redundancy, {0, 1e6}, "units", "32",
                             "Units wanted for each part of the message; 0: as many as there are"),
       number_option<Options>("max_move", &Options::max_move_percent, {0, 100},
-                             "percent of the diagonal", "the scheme's",
-                             "Move of a point beyond which parts get fewer units; 0: no limit"),
+                             "percent of the diagonal", "",
+                             "Farthest that a point may move; a mesh that cannot be marked so is "
+                             "refused. Without it, parts get fewer units rather than move points "
+                             "farther than 0.1, except with iie; 0: no limit"),
       number_option<Options>("drop_dearest", &Options::drop_dearest_percent, {0, 99.9}, "percent",
                              "0",
                              "Share of the candidates to leave out, the most expensive ones first: "
                              "lowers capacity and visibility"),
+      flag_option<Options>("remark", &Options::remark,
+                           "Mark a mesh also if it carries a mark of this key already"),
       flag_option<Options>(
           "detail", &Options::detail,
           "List every unit in the record, for verify --detail; always on with iie")};
@@ -174,7 +178,6 @@ MarkOptions default_mark_options(std::string_view scheme, bool fill) {
   options.scheme_options = defaults.options;
   if (defaults.has_few_units && !fill) {
     options.layout.method = LayoutMethod::LocalSearch;
-    options.max_move_percent = 0;
   }
   return options;
 }
@@ -262,6 +265,8 @@ MarkRequest resolve(const OptionValues& values) {
     request.payload = from_hex(*hex);
   } else if (const std::string* text = text_of("message")) {
     request.payload = Message(text->begin(), text->end());
+  } else {
+    throw Error(ErrorCode::Usage, {}, "", "no message: give --message, --message-hex or --fill");
   }
   request.options = resolved_options(values, scheme_of(values), request.is_fill());
   if (!request.is_fill()) check_message(request.options.format, request.message().size());

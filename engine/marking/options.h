@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -45,16 +46,20 @@ struct MarkOptions {
   AssignMethod assign = AssignMethod::Bottleneck;
   // Units wanted per part; 0: as many as there are.
   std::uint32_t redundancy = 32;
-  // The redundancy is reduced, down to kMinRedundancy, until no point moves farther than this, in
-  // percent of the bounding box's diagonal. A move kVisibleMove times as far is never made. 0: no
-  // limit. Does not apply to sequential assignment and to fill.
-  double max_move_percent = 0.1;
+  // No point moves farther than this, in percent of the surface's diagonal: parts get fewer units,
+  // fill leaves units out, and a mesh that cannot be marked so is too visible. 0: no limit.
+  // Nothing: parts get fewer units, down to kMinRedundancy, until no point moves farther than
+  // kUsualMove, and only a move kVisibleMove times as far is never made; unless the scheme has few
+  // units, the assignment is sequential, or the mesh is filled.
+  std::optional<double> max_move_percent;
   // The share of the candidates to leave out, in percent: those whose cheapest word costs most.
   // This reduces the capacity and makes the mark less visible, since the least cost of a unit
   // bounds the bottleneck from below (in TSQ, the cost of the marker).
   double drop_dearest_percent = 0;
   // Fill uses format.subscript_bits unchanged instead of as few as tell the units apart.
   bool keeps_subscript_bits = false;
+  // Marks a mesh also if it carries a mark of this key, scheme and word format. Fill never asks.
+  bool remark = false;
   bool detail = false;  // reports every unit, so that verification can locate damage
 
   [[nodiscard]] Encoding encoding() const { return {scheme, format, scheme_options}; }

@@ -4,6 +4,7 @@
 
 #include "engine/assignment/assignment.h"
 #include "engine/base/error.h"
+#include "engine/base/stop.h"
 
 namespace triglyph {
 namespace {
@@ -41,30 +42,50 @@ std::vector<std::uint32_t> share_demand(std::size_t units, std::size_t parts,
 
 }  // namespace
 
-WordAssigner::WordAssigner(const BoundScheme& scheme, const UnitSet& units,
-                           std::span<const std::uint32_t> valid, std::span<const Word> words,
-                           const MarkOptions& options, double max_cost)
+WordAssigner::WordAssigner(const BoundScheme& scheme, const BoundScheme& moves,
+                           const UnitSet& units, std::span<const std::uint32_t> valid,
+                           std::span<const Word> words, const MarkOptions& options,
+                           const MoveLimits& limits)
     : scheme_(scheme),
+      moves_(moves),
       units_(units),
       valid_(valid),
       words_(words),
       options_(options),
-      max_cost_(max_cost),
+      limits_(limits),
       blocks_(std::max<std::size_t>(1, (valid.size() * words.size() + kMaxPairs - 1) / kMaxPairs)),
       costs_of_block_(kNoBlock) {}
 
+std::vector<std::uint32_t> WordAssigner::demand_of(std::uint32_t redundancy) const {
+  return share_demand(valid_.size(), words_.size(), redundancy);
+}
+
+// With a cap, pairs beyond it are infeasible already; what counts is that no part is left with too
+// few units, since a maximum matching may serve one part with all copies and another with none.
+bool WordAssigner::is_within_limits(const WordPlan& plan, std::uint32_t redundancy) const {
+  if (has_aim()) return redundancy == 0 || plan.cost_max <= limits_.aim;
+  if (limits_.cap == 0 || options_.assign == AssignMethod::Sequential) return true;
+  const std::vector<std::uint32_t> demand = demand_of(redundancy);
+  std::vector<std::uint32_t> placed(words_.size(), 0);
+  for (const Placement& placement : plan.placements) ++placed[placement.word];
+  for (std::size_t word = 0; word < placed.size(); ++word) {
+    if (placed[word] < std::min(kMinRedundancy, demand[word])) return false;
+  }
+  return true;
+}
+
 WordPlan WordAssigner::plan(std::uint32_t redundancy) {
   WordPlan best = solve(redundancy);
-  if (!is_limited() || redundancy == 0 || best.cost_max <= max_cost_) return best;
-  // bisection for the greatest redundancy within the limit; kMinRedundancy in any case
+  if (is_within_limits(best, redundancy)) return best;
+  // bisection for the greatest redundancy within the limits; the least in any case
   const auto possible = static_cast<std::uint32_t>((valid_.size() - 1) / words_.size() + 1);
-  std::uint32_t too_many = std::min(redundancy, possible);
-  std::uint32_t enough = std::min(kMinRedundancy, too_many);
+  std::uint32_t too_many = redundancy == 0 ? possible : std::min(redundancy, possible);
+  std::uint32_t enough = std::min(has_aim() ? kMinRedundancy : 1, too_many);
   best = solve(enough);
-  while (best.cost_max <= max_cost_ && too_many - enough > 1) {
+  while (is_within_limits(best, enough) && too_many - enough > 1) {
     const std::uint32_t middle = enough + (too_many - enough) / 2;
     WordPlan candidate = solve(middle);
-    if (candidate.cost_max <= max_cost_) {
+    if (is_within_limits(candidate, middle)) {
       best = std::move(candidate);
       enough = middle;
     } else {
@@ -74,10 +95,17 @@ WordPlan WordAssigner::plan(std::uint32_t redundancy) {
   return best;
 }
 
+double WordAssigner::least_move() {
+  check(limits_.cap == 0 && limits_.aim == 0, "the least move is that without limits");
+  const std::vector<std::uint32_t> demand(words_.size(), 1);
+  return assign_bottleneck(moves_.costs(units_, block_units(0), words_), demand).max_cost;
+}
+
 WordPlan WordAssigner::solve(std::uint32_t redundancy) {
-  const std::vector<std::uint32_t> demand = share_demand(valid_.size(), words_.size(), redundancy);
+  const std::vector<std::uint32_t> demand = demand_of(redundancy);
   WordPlan plan;
   for (std::size_t block = 0; block < blocks_; ++block) {
+    stop_point();
     std::vector<std::uint32_t> share(words_.size());
     for (std::size_t word = 0; word < words_.size(); ++word) {
       const auto until = [&](std::size_t b) { return std::size_t{demand[word]} * b / blocks_; };
@@ -103,17 +131,25 @@ std::vector<std::uint32_t> WordAssigner::block_units(std::size_t block) const {
   return chosen;
 }
 
+// Makes the pairs infeasible that move a point too far.
+void WordAssigner::leave_out_far(std::span<const std::uint32_t> chosen) {
+  if (limits_.cap == 0 && !has_aim()) return;
+  const auto farthest =
+      static_cast<float>(limits_.cap > 0 ? limits_.cap : kVisibleMove * limits_.aim);
+  const bool costs_are_moves = limits_.cap == 0 || &moves_ == &scheme_;
+  const CostMatrix moves = costs_are_moves ? CostMatrix{} : moves_.costs(units_, chosen, words_);
+  const std::vector<float>& far = costs_are_moves ? costs_.values : moves.values;
+  for (std::size_t pair = 0; pair < far.size(); ++pair) {
+    if (far[pair] > farthest) costs_.values[pair] = kInfeasible;
+  }
+}
+
 const CostMatrix& WordAssigner::block_costs(std::size_t block,
                                             std::span<const std::uint32_t> chosen) {
   if (costs_of_block_ != block) {
     costs_ = scheme_.costs(units_, chosen, words_);
     costs_of_block_ = block;
-    const auto visible = static_cast<float>(kVisibleMove * max_cost_);
-    if (is_limited()) {
-      for (float& cost : costs_.values) {
-        if (cost > visible) cost = kInfeasible;
-      }
-    }
+    leave_out_far(chosen);
   }
   for (const auto& [unit, word] : ruled_out_) {
     const auto at = std::lower_bound(chosen.begin(), chosen.end(), unit);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/base/parallel.h"
+#include "engine/base/stop.h"
 
 namespace triglyph {
 namespace {
@@ -64,9 +65,22 @@ class EmbeddedPlacements {
     }
   }
 
+  // Takes back every unit that moved a point farther than this.
+  void take_back_far(double max_move) {
+    for (std::uint32_t i = 0; i < placements_.size(); ++i) {
+      if (!is_embedded(i)) continue;
+      const auto points = moved(i);
+      const bool is_far = std::any_of(points.begin(), points.end(), [&](std::uint32_t point) {
+        return (positions_[point] - surface_.mesh.positions[point]).norm() > max_move;
+      });
+      if (is_far) take_back(i);
+    }
+  }
+
   // Takes back every unit that moved a corner of a flipped triangle, until there is none.
   void take_back_flips() {
     for (;;) {
+      stop_point();
       const auto flipped =
           flipped_triangles(surface_.mesh.triangles, surface_.mesh.positions, positions_);
       if (flipped.empty()) return;
@@ -136,12 +150,13 @@ std::vector<std::uint32_t> flipped_triangles(std::span<const Triangle> triangles
 }
 
 void settle(const Surface& surface, const BoundScheme& scheme, const UnitSet& units,
-            std::span<const Placement> placements, const Rounding& round, Marking& marking) {
+            std::span<const Placement> placements, const SettleRules& rules, Marking& marking) {
   Embedding embedding = scheme.embed(units, placements, marking.words);
   marking.positions = std::move(embedding.positions);
   EmbeddedPlacements embedded(surface, units, placements, marking.positions);
   for (const std::uint32_t failed : embedding.failed) embedded.take_back(failed);
-  embedded.round_moved(round);
+  embedded.round_moved(rules.round);
+  if (rules.max_move > 0) embedded.take_back_far(rules.max_move);
   embedded.take_back_flips();
   embedded.take_back_misread(scheme, marking.words);
   embedded.take_back_flips();

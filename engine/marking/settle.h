@@ -12,10 +12,16 @@ namespace triglyph {
                                                            std::span<const Vec3> before,
                                                            std::span<const Vec3> after);
 
-// Embeds the placements, rounds what moved, and takes units back until no face is flipped and every
-// unit left reads its word with margin. Fills positions, carriers and units_dropped of `marking`,
-// whose words the placements index. `scheme` is bound to `surface`.
+// What the positions of a marked mesh must comply with.
+struct SettleRules {
+  const Rounding& round;  // to what the output can hold
+  double max_move = 0;    // the farthest that a point may move, after rounding; 0: no limit
+};
+
+// Embeds the placements, rounds what moved, and takes units back until no point moved too far, no
+// face is flipped and every unit left reads its word with margin. Fills positions, carriers and
+// units_dropped of `marking`, whose words the placements index. `scheme` is bound to `surface`.
 void settle(const Surface& surface, const BoundScheme& scheme, const UnitSet& units,
-            std::span<const Placement> placements, const Rounding& round, Marking& marking);
+            std::span<const Placement> placements, const SettleRules& rules, Marking& marking);
 
 }  // namespace triglyph

@@ -80,7 +80,8 @@ void check_message(const WordFormat& format, std::size_t message_bytes) {
     throw Error(ErrorCode::Usage, {}, "",
                 "the message needs " + std::to_string(parts) + " parts, but " +
                     std::to_string(format.subscript_bits) + " subscript bits number only " +
-                    std::to_string(most));
+                    std::to_string(most) +
+                    ": shorten it, or raise the subscript bits or the part bits");
   }
 }
 

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "engine/base/error.h"
-#include "engine/geometry/box.h"
+#include "engine/mesh/surface_diagonal.h"
 #include "engine/metric/deformation.h"
 #include "engine/metric/roughness.h"
 #include "engine/metric/sampled_distance.h"
@@ -16,7 +16,7 @@ namespace {
 using Values = std::vector<NamedValue>;
 
 Values hausdorff_values(const Mesh& first, const Mesh& second, double tolerance) {
-  const double diagonal = box_diagonal(first.positions);
+  const double diagonal = surface_diagonal(first);
   const HausdorffDistance distance = have_same_triangles(first, second)
                                          ? hausdorff_of_move(first.triangles, first.positions,
                                                              second.positions, tolerance * diagonal)
@@ -52,8 +52,8 @@ Values metro_values(const Mesh& first, const Mesh& second, double) {
 }
 
 Values mrms_values(const Mesh& first, const Mesh& second, double) {
-  const double diagonal = box_diagonal(first.positions);
-  const double greater = std::max(diagonal, box_diagonal(second.positions));
+  const double diagonal = surface_diagonal(first);
+  const double greater = std::max(diagonal, surface_diagonal(second));
   const TwoWayStatistics statistics = mesh_distance(first, second, kMeshStep * greater);
   Values values = two_way_values("mesh", statistics);
   const double mrms = std::max(statistics.forward.rms, statistics.backward.rms);

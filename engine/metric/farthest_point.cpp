@@ -8,6 +8,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
+#include "engine/base/stop.h"
 
 namespace triglyph {
 namespace {
@@ -245,6 +246,7 @@ class BranchAndBound {
 
   // Splits the pieces with the greatest bounds. Returns their number.
   std::size_t split_farthest_pieces() {
+    stop_point();
     std::vector<Piece> round;
     while (!pieces_.empty() && is_open(pieces_.front().upper) && round.size() < kPiecesPerRound) {
       std::pop_heap(pieces_.begin(), pieces_.end());

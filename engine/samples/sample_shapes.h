@@ -15,13 +15,12 @@ enum class SampleShape {
 };
 
 // An irregular triangulation like that of a scan: jittered points, diagonals drawn by lot, sizes
-// that vary smoothly, bumps of several wavelengths; within 10 % of `triangles` many. Manifold,
-// consistently oriented (outwards where closed), points distinct, about 2 units across. The shape
-// is a ball, sheet or slab under a one-to-one map of space, so it does not meet itself where the
-// triangles are smaller than the bumps. The slab keeps its edges. note: not a model of scanner
-// noise, nor of holes in the data.
-// The result depends on the arguments only. Precondition: triangles >= 40, for HighGenus >= 64,
-// and at most 2^32, else std::logic_error. O(triangles).
+// that vary smoothly, bumps of several wavelengths; within 10 % of `triangles` many from 80 on.
+// Manifold, consistently oriented (outwards where closed), points distinct, about 2 units across.
+// The shape is a ball, sheet or slab under a one-to-one map of space, so it does not meet itself
+// where the triangles are smaller than the bumps. The slab keeps its edges. note: not a model of
+// scanner noise, nor of holes in the data. The result depends on the arguments only. Precondition:
+// triangles >= 40, for HighGenus >= 64, and at most 2^32, else std::logic_error. O(triangles).
 [[nodiscard]] Mesh make_sample_shape(SampleShape shape, std::size_t triangles, std::uint64_t seed);
 
 // Handles of the shape: 0, or for HighGenus k * k for k between 1 (small meshes) and 5.

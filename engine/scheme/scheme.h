@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -68,6 +69,13 @@ class BoundScheme {
   // Returns the readings of all units that show the marker, by strictly ascending anchor; anchors
   // number the same places as in find_units. Reading is blind: it knows nothing of the original.
   [[nodiscard]] virtual std::vector<Reading> read() const = 0;
+
+  // Returns those of the readings of read() at one in `one_in` places, drawn by lot; nothing for
+  // schemes of which reading everything costs little beside marking, or is needed in any case.
+  [[nodiscard]] virtual std::optional<std::vector<Reading>> read_sample(
+      std::uint32_t /*one_in*/) const {
+    return std::nullopt;
+  }
 
   // Returns those of the readings of read() whose anchors are among `anchors`, which ascend
   // strictly. An anchor that the surface does not have is never read. TSQ and AIE take

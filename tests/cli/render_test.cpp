@@ -111,5 +111,20 @@ TEST_F(CliRender, GoesOnAfterABadLineOfABatch) {
   EXPECT_TRUE(is_png("2.png"));
 }
 
+TEST_F(CliRender, DrawsEveryPairOfFoldersAndRecords) {
+  fs::create_directories(folder_ / "in/sub");
+  fs::rename(folder_ / "a.obj", folder_ / "in/a.obj");
+  fs::rename(folder_ / "b.obj", folder_ / "in/sub/b.obj");
+  ASSERT_EQ(triglyph("mark in --message m --out o --records r.jsonl"), 0) << message();
+  EXPECT_EQ(triglyph("render in o --out p --width 64 --samples 1"), 0);
+  EXPECT_TRUE(fs::exists(folder_ / "p/a.obj.png"));
+  EXPECT_TRUE(fs::exists(folder_ / "p/sub/b.obj.png"));
+  EXPECT_EQ(triglyph("render r.jsonl --out q --width 64 --samples 1"), 0);
+  EXPECT_TRUE(fs::exists(folder_ / "q/o/sub/b.obj.png"));
+  fs::remove(folder_ / "o/a.obj");
+  EXPECT_EQ(triglyph("render in o --out p --width 64 --samples 1"), 3);
+  EXPECT_EQ(triglyph("render in o --width 64"), 2);  // no --out
+}
+
 }  // namespace
 }  // namespace triglyph

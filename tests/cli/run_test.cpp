@@ -360,5 +360,27 @@ TEST_F(CliRun, WhatWasNotMarkedHasNoDistance) {
   EXPECT_FALSE(record.contains("displacement_max"));
 }
 
+TEST_F(CliRun, ModesComeAlongAndOnRequestTimesAndCompanions) {
+  make_samples(1);
+  folder_.write("in/a.mtl", "newmtl a\n");
+  const std::string mesh = test::read_all(folder_ / "in/0.obj");
+  folder_.write("in/0.obj", "mtllib a.mtl\n" + mesh);
+  fs::permissions(folder_ / "in/0.obj", fs::perms(0640));
+  const auto old = fs::file_time_type::clock::now() - std::chrono::hours(1000);
+  fs::last_write_time(folder_ / "in/0.obj", old);
+  ASSERT_EQ(run("mark in --message m --out o").code, 0);
+  EXPECT_EQ(fs::status(folder_ / "o/0.obj").permissions(), fs::perms(0640));
+  EXPECT_NE(fs::last_write_time(folder_ / "o/0.obj"), fs::last_write_time(folder_ / "in/0.obj"));
+  EXPECT_FALSE(fs::exists(folder_ / "o/a.mtl"));
+  ASSERT_EQ(run("mark in --message m --out p --keep-times --companions").code, 0);
+  EXPECT_EQ(fs::last_write_time(folder_ / "p/0.obj"), fs::last_write_time(folder_ / "in/0.obj"));
+  EXPECT_EQ(test::read_all(folder_ / "p/a.mtl"), "newmtl a\n");
+  folder_.write("q/a.mtl", "somebody's");
+  const RunResult refused = run("mark in --message m --out q --companions --json");
+  EXPECT_EQ(refused.code, 3);
+  EXPECT_EQ(lines(refused.out)[0]["status"], "usage");
+  EXPECT_FALSE(fs::exists(folder_ / "q/0.obj"));
+}
+
 }  // namespace
 }  // namespace triglyph

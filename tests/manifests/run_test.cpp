@@ -124,17 +124,17 @@ TEST(RunJobs, StopsAtAnInterruptWithWholeFilesOnly) {
   ManifestReader jobs(collection.manifest(), {}, collection.folder() / "out");
   std::atomic<bool> stop{false};
   std::size_t count = 0;
+  std::vector<fs::path> marked;
   FlowOptions options;
   options.memory_bytes = 1;  // one mesh at a time
   run_jobs(jobs, Key::trial(), {.flow = options},
            {.delivered =
                 [&](const Record& record) {
-                  if (record.file.status == FileStatus::Marked) {
-                    (void)message_in(record.file.out);
-                  }
+                  if (record.file.status == FileStatus::Marked) marked.push_back(record.file.out);
                   stop = ++count >= 2;
                 }},
            stop);
+  for (const fs::path& path : marked) (void)message_in(path);
   std::size_t files = 0;
   for (const auto& entry : fs::directory_iterator(collection.folder() / "out/in")) {
     EXPECT_EQ(entry.path().filename().string().front() == '.', false);

@@ -1,14 +1,20 @@
 #include "engine/marking/mark.h"
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <set>
+#include <thread>
 
 #include <gtest/gtest.h>
 
 #include "engine/base/error.h"
+#include "engine/base/stop.h"
 #include "engine/marking/extract.h"
+#include "engine/marking/plan_words.h"
 #include "engine/marking/settle.h"
+#include "engine/mesh/surface_diagonal.h"
 #include "engine/scheme/registry.h"
 #include "tests/support/arenas.h"
 #include "tests/support/attacks.h"
@@ -87,6 +93,52 @@ TEST_P(EverySchemesMark, AnotherKeyAndAnUnmarkedMeshYieldNothing) {
   EXPECT_EQ(read(marked, Key::trial(), options_).message, kMessage);
   for (int i = 0; i < 20; ++i) EXPECT_FALSE(read(marked, Key::generate(), options_).message);
   EXPECT_FALSE(read(ball_for(options_).mesh, Key::trial(), options_).message);
+}
+
+TEST_P(EverySchemesMark, AMarkedMeshIsMarkedAgainOnlyIfThatIsWanted) {
+  const test::Solid once(marked_ball(options_));
+  const auto mark_again = [&](const Key& key) {
+    return mark(once.surface(), Message{'b'}, key, options_, test::as_float, 1e-7);
+  };
+  const Marking refused = mark_again(Key::trial());
+  EXPECT_EQ(refused.status, MarkStatus::AlreadyMarked);
+  ASSERT_TRUE(refused.found);
+  EXPECT_EQ(refused.found->message, kMessage);
+  EXPECT_GT(refused.found->agreeing, 0U);
+  EXPECT_EQ(mark_again(Key::generate()).status, MarkStatus::Marked);
+  options_.remark = true;
+  const Marking again = mark_again(Key::trial());
+  ASSERT_EQ(again.status, MarkStatus::Marked);
+  EXPECT_EQ(read({again.positions, once.mesh.triangles}, Key::trial(), options_).message,
+            Message{'b'});
+}
+
+// A sample of a mesh that carries a message looks marked; of others one in a hundred does.
+TEST_P(EverySchemesMark, SamplesOfMarkedMeshesRepeatWords) {
+  const auto looks_marked = [&](const Mesh& mesh) -> std::optional<bool> {
+    const test::Solid solid(mesh);
+    const WordCode code(Key::trial(), options_.format);
+    const auto scheme = make_scheme(options_.scheme, code, options_.scheme_options);
+    const auto sample = scheme->bind(solid.surface())->read_sample(6);
+    if (!sample) return std::nullopt;
+    return has_repeated_words(*sample, options_.format);
+  };
+  if (!looks_marked(ball_for(options_).mesh)) GTEST_SKIP() << "it is read as a whole";
+  EXPECT_EQ(looks_marked(marked_ball(options_)), true);
+  EXPECT_EQ(looks_marked(test::cropped_half(marked_ball(options_), 1)), true);
+  int alarms = 0;
+  for (std::uint64_t i = 0; i < 60; ++i) {
+    alarms += *looks_marked(make_sample_shape(SampleShape::Closed, 1000 + 500 * i, i)) ? 1 : 0;
+  }
+  EXPECT_LE(alarms, 4);
+}
+
+TEST_P(EverySchemesMark, FillIsNotAskedForAMark) {
+  const test::Solid once(marked_ball(options_));
+  EXPECT_EQ(mark(once.surface(), Fill{}, Key::trial(), default_mark_options(options_.scheme, true),
+                 test::as_float, 1e-7)
+                .status,
+            MarkStatus::Marked);
 }
 
 // 200 unmarked meshes: no false alarm. With a 32-bit tag one is expected in 20 million such runs.
@@ -190,6 +242,109 @@ TEST(Mark, OptimisedMovesLessThanUnoptimised) {
   EXPECT_LE(bottleneck.units_valid, bottleneck.units_bound);
 }
 
+// The farthest move of a point, in percent of the diagonal.
+double farthest_move(const Mesh& mesh, const Marking& marking) {
+  double farthest = 0;
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    farthest = std::max(farthest, (marking.positions[i] - mesh.positions[i]).norm());
+  }
+  return 100 * farthest / surface_diagonal(mesh);
+}
+
+// Coarse numbers move points beyond what the assignment knows of.
+Vec3 with_three_decimals(const Vec3& p) {
+  return Vec3(std::round(p[0] * 1e3), std::round(p[1] * 1e3), std::round(p[2] * 1e3)) / 1e3;
+}
+
+TEST_P(EverySchemesMark, NoPointMovesFartherThanTheLimit) {
+  const test::Solid& ball = ball_for(options_);
+  for (const CostFunction cost : {CostFunction::Displacement, CostFunction::Normal}) {
+    for (const double percent : {1.0, 0.3, 0.1, 0.05}) {
+      options_.cost = cost;
+      options_.max_move_percent = percent;
+      const Marking marking =
+          mark(ball.surface(), kMessage, Key::trial(), options_, test::as_float, 1e-7);
+      EXPECT_LE(farthest_move(ball.mesh, marking), percent);
+      if (marking.status != MarkStatus::Marked) {
+        EXPECT_EQ(marking.status, MarkStatus::TooVisible) << percent;
+        continue;
+      }
+      EXPECT_EQ(read({marking.positions, ball.mesh.triangles}, Key::trial(), options_).message,
+                kMessage);
+    }
+  }
+}
+
+TEST(Mark, NoPointMovesFartherThanTheLimitAfterRounding) {
+  MarkOptions options;
+  options.max_move_percent = 0.06;
+  const Marking marking = mark(test::bumpy_ball().surface(), kMessage, Key::trial(), options,
+                               with_three_decimals, 1e-3);
+  EXPECT_LE(farthest_move(test::bumpy_ball().mesh, marking), 0.06);
+}
+
+// Small meshes of all shapes, and limits so low that none can be marked.
+TEST_P(EverySchemesMark, TheLeastLimitThatIsNamedDoesAndATenthLessDoesNot) {
+  const SampleShape shapes[] = {SampleShape::Closed, SampleShape::Open, SampleShape::HighGenus};
+  const Message message{'m'};
+  int refused = 0;
+  for (std::uint64_t i = 0; i < 6; ++i) {
+    const std::size_t triangles = options_.scheme == "iie" ? 20'000 : 1000;
+    const test::Solid solid(make_sample_shape(shapes[i % 3], triangles, i));
+    const auto mark_within = [&](double percent) {
+      options_.max_move_percent = percent;
+      return mark(solid.surface(), message, Key::trial(), options_, test::as_float, 1e-7);
+    };
+    const Marking refusal = mark_within(1e-3);
+    if (refusal.status == MarkStatus::TooSmall) continue;
+    ASSERT_EQ(refusal.status, MarkStatus::TooVisible);
+    ++refused;
+    const WayOut& way_out = refusal.way_out;
+    EXPECT_GE(way_out.max_move_percent, way_out.move_needed_percent);
+    const Marking marked = mark_within(way_out.max_move_percent);
+    EXPECT_EQ(marked.status, MarkStatus::Marked) << way_out.max_move_percent;
+    EXPECT_LE(farthest_move(solid.mesh, marked), way_out.max_move_percent);
+    EXPECT_EQ(mark_within(0.9 * way_out.move_needed_percent).status, MarkStatus::TooVisible);
+  }
+  EXPECT_GT(refused, 3);
+}
+
+TEST(Mark, FillAndSequentialAssignmentLeaveOutWhatMovesTooFar) {
+  const test::Solid& ball = test::bumpy_ball();
+  MarkOptions options = default_mark_options("tsq", true);
+  const auto fill = [&] {
+    return mark(ball.surface(), Fill{}, Key::trial(), options, test::as_float, 1e-7);
+  };
+  for (const AssignMethod assign : {AssignMethod::Bottleneck, AssignMethod::Sequential}) {
+    options.assign = assign;
+    options.max_move_percent.reset();
+    const Marking all = fill();
+    const double percent = 0.3 * farthest_move(ball.mesh, all);
+    options.max_move_percent = percent;
+    const Marking some = fill();
+    EXPECT_EQ(some.status, MarkStatus::Marked);
+    EXPECT_LE(farthest_move(ball.mesh, some), percent);
+    EXPECT_LT(some.carriers.size(), all.carriers.size());
+    EXPECT_GT(some.carriers.size(), all.carriers.size() / 10);
+  }
+  options.max_move_percent = 1e-9;
+  EXPECT_EQ(fill().status, MarkStatus::TooVisible);
+}
+
+// A point far away that no face uses must not make moves look small.
+TEST(Mark, LimitsRelateToWhatFacesUse) {
+  Mesh mesh = test::bumpy_ball().mesh;
+  MarkOptions options;
+  options.max_move_percent = 0.05;
+  const auto marked = [&] {
+    const test::Solid solid(mesh);
+    return mark(solid.surface(), kMessage, Key::trial(), options, test::as_float, 1e-7);
+  };
+  const Marking without = marked();
+  mesh.positions.emplace_back(1000, 0, 0);
+  EXPECT_EQ(marked().carriers, without.carriers);
+}
+
 TEST(Mark, RedundancyLeavesTheDearestUnitsOut) {
   MarkOptions few;
   few.redundancy = 4;
@@ -242,6 +397,82 @@ TEST(Mark, TooSmallAndTooCoarseAreSaid) {
             MarkStatus::TooCoarse);
 }
 
+// Small meshes of all shapes, and a message that is far too long for them.
+TEST_P(EverySchemesMark, TheShorterMessageThatIsNamedFits) {
+  const SampleShape shapes[] = {SampleShape::Closed, SampleShape::Open, SampleShape::HighGenus};
+  Message message(100);
+  while (parts_for(options_.format, message.size()) > 1U << options_.format.subscript_bits) {
+    message.pop_back();
+  }
+  for (std::size_t i = 0; i < message.size(); ++i) message[i] = static_cast<std::uint8_t>(37 * i);
+  int shortened = 0;
+  for (std::uint64_t i = 0; i < 9; ++i) {
+    const std::size_t triangles = (options_.scheme == "iie" ? 3000 : 250) * (1 + i / 3);
+    const test::Solid solid(make_sample_shape(shapes[i % 3], triangles, i));
+    const auto mark_with = [&](std::size_t bytes) {
+      const Message part(message.begin(), message.begin() + static_cast<std::ptrdiff_t>(bytes));
+      return mark(solid.surface(), part, Key::trial(), options_, test::as_float, 1e-7);
+    };
+    const Marking refused = mark_with(message.size());
+    ASSERT_EQ(refused.status, MarkStatus::TooSmall) << i;
+    const std::size_t bytes = refused.way_out.message_bytes;
+    if (bytes == 0) {
+      EXPECT_EQ(mark_with(1).status, MarkStatus::TooSmall) << i;
+      continue;
+    }
+    ++shortened;
+    const Marking marked = mark_with(bytes);
+    ASSERT_EQ(marked.status, MarkStatus::Marked) << i;
+    const Message part(message.begin(), message.begin() + static_cast<std::ptrdiff_t>(bytes));
+    EXPECT_EQ(read({marked.positions, solid.mesh.triangles}, Key::trial(), options_).message, part);
+    EXPECT_EQ(mark_with(bytes + 1).status, MarkStatus::TooSmall) << i;
+  }
+  EXPECT_GT(shortened, 2);
+}
+
+TEST(Mark, TheWiderCellsThatAreNamedSurviveCoarseNumbers) {
+  double step = 1e-5;
+  const auto coarse = [&](const Vec3& p) {
+    return Vec3(std::round(p[0] / step), std::round(p[1] / step), std::round(p[2] / step)) * step;
+  };
+  MarkOptions options;
+  const auto mark_coarsely = [&] {
+    return mark(test::bumpy_ball().surface(), kMessage, Key::trial(), options, coarse, step);
+  };
+  Marking refused = mark_coarsely();
+  while (refused.status != MarkStatus::TooCoarse) {
+    step *= 1.2;
+    refused = mark_coarsely();
+  }
+  ASSERT_GT(refused.way_out.step, 0.02);
+  options.scheme_options["step"] = refused.way_out.step;
+  const Marking marked = mark_coarsely();
+  ASSERT_EQ(marked.status, MarkStatus::Marked);
+  EXPECT_EQ(
+      read({marked.positions, test::bumpy_ball().mesh.triangles}, Key::trial(), options).message,
+      kMessage);
+}
+
+// Moves ten times as far as usual are made only for those who allow them.
+TEST(Mark, ALimitThatLetsMovesBeSeenIsNamedWhereTheUsualOneIsInTheWay) {
+  const test::Solid solid(make_sample_shape(SampleShape::HighGenus, 250, 2));
+  int named = 0;
+  for (std::uint8_t c = 'a'; c <= 'z'; ++c) {
+    MarkOptions options;
+    const auto mark_small = [&] {
+      return mark(solid.surface(), Message{c}, Key::trial(), options, test::as_float, 1e-7);
+    };
+    const Marking refused = mark_small();
+    if (refused.status == MarkStatus::Marked) continue;
+    if (refused.way_out.max_move_percent == 0) continue;
+    ++named;
+    EXPECT_GT(refused.way_out.max_move_percent, kUsualMove * kVisibleMove);
+    options.max_move_percent = refused.way_out.max_move_percent;
+    EXPECT_EQ(mark_small().status, MarkStatus::Marked);
+  }
+  EXPECT_GT(named, 0);
+}
+
 TEST(Mark, RefusesUnknownSchemesAndCellWidths) {
   MarkOptions options;
   options.scheme = "xyz";
@@ -281,6 +512,30 @@ TEST_P(EverySchemesMark, EveryCarrierReadsItsWordWithMargin) {
     ASSERT_TRUE(at != readings.end() && at->anchor == carrier.anchor);
     EXPECT_EQ(at->word, marking.words[carrier.word]);
     EXPECT_LE(at->worst_offset, 0.5);
+  }
+}
+
+// Filling this ball takes seconds; the flag is set before, and at moments of the layout, the costs
+// and the assignment.
+TEST(Mark, StopsSoonAfterTheFlagIsSet) {
+  using namespace std::chrono_literals;
+  using Clock = std::chrono::steady_clock;
+  const test::Solid ball(make_sample_shape(SampleShape::Closed, 200'000, 1));
+  MarkOptions options = default_mark_options("tsq", true);
+  for (const auto delay : {0ms, 100ms, 500ms, 1500ms}) {
+    std::atomic<bool> flag = false;
+    const StopScope scope(flag);
+    Clock::time_point set;
+    std::thread interrupter([&] {
+      std::this_thread::sleep_for(delay);
+      set = Clock::now();
+      flag = true;
+    });
+    EXPECT_THROW((void)mark(ball.surface(), Fill{}, Key::trial(), options, test::as_float, 1e-7),
+                 Stopped)
+        << delay.count();
+    interrupter.join();
+    EXPECT_LT(Clock::now() - set, 5s) << delay.count();
   }
 }
 

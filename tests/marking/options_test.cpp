@@ -52,6 +52,12 @@ TEST(MarkOptions, ValuesResolveToTheOptionsTheyCameFrom) {
   }
 }
 
+TEST(MarkOptions, ValuesNameALimitOfMovesOnlyIfOneWasGiven) {
+  EXPECT_FALSE(values_of(resolve(with_message({})).options).contains("max_move"));
+  const MarkOptions none = resolve(with_message({{"max_move", 0.0}})).options;
+  EXPECT_EQ(values_of(none).at("max_move"), OptionValue(0.0));
+}
+
 TEST(MarkOptions, AMessageInAnyFormReplacesOneInAnyOther) {
   const OptionValues base = with_message({{"redundancy", std::int64_t{3}}});
   const MarkRequest hex = resolve(layered(base, {{"message_hex", std::string("00ff")}}));
@@ -62,6 +68,17 @@ TEST(MarkOptions, AMessageInAnyFormReplacesOneInAnyOther) {
   EXPECT_THROW((void)resolve({}), Error);
   EXPECT_THROW((void)resolve({{"message", std::string()}}), Error);
   EXPECT_THROW((void)resolve({{"message_hex", std::string()}}), Error);
+}
+
+TEST(MarkOptions, AMissingMessageIsRefusedWithItsThreeForms) {
+  try {
+    (void)resolve({{"fill", false}});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::Usage);
+    EXPECT_STREQ(error.what(), "no message: give --message, --message-hex or --fill");
+  }
+  EXPECT_EQ(find_mark_option("message")->default_text, "");
 }
 
 TEST(MarkOptions, OptionsOfAnotherSchemeContradictTheSchemeInUse) {

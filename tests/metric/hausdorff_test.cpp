@@ -11,6 +11,7 @@
 #include "engine/base/random.h"
 #include "engine/geometry/box.h"
 #include "engine/geometry/spatial_index.h"
+#include "engine/mesh/surface_diagonal.h"
 #include "engine/metric/deformation.h"
 #include "tests/support/arenas.h"
 #include "tests/support/remeshing.h"
@@ -214,6 +215,14 @@ TEST(Hausdorff, IsRefusedWithoutFaces) {
 TEST(BoxDiagonal, IsThatOfTheBox) {
   EXPECT_DOUBLE_EQ(box_diagonal(test::flat_grid(3, 4).positions), 5);
   EXPECT_EQ(box_diagonal({}), 0);
+}
+
+TEST(SurfaceDiagonal, LeavesOutPointsThatNoTriangleUses) {
+  Mesh mesh = test::flat_grid(3, 4);
+  mesh.positions.emplace_back(1000, 0, 0);
+  EXPECT_DOUBLE_EQ(surface_diagonal(mesh), 5);
+  mesh.triangles.clear();
+  EXPECT_EQ(surface_diagonal(mesh), 0);
 }
 
 }  // namespace

@@ -260,9 +260,8 @@ TEST(RealMeshes, EveryFileOfACollectionGetsARecord) {
                       folder / "out");
   std::vector<Record> records;
   const std::atomic<bool> stop{false};
-  run_jobs(
-      jobs, Key::trial(), {},
-      {.delivered = [&](const Record& record) { records.push_back(record); }}, stop);
+  run_jobs(jobs, Key::trial(), {},
+           {.delivered = [&](const Record& record) { records.push_back(record); }}, stop);
   EXPECT_EQ(records.size(), expected);
   for (const Record& done : records) {
     const MarkedFile& record = done.file;

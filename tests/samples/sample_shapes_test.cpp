@@ -187,5 +187,25 @@ TEST(SampleShapes, RefuseToBeTiny) {
   EXPECT_THROW((void)make_sample_shape(SampleShape::HighGenus, 63, 0), std::logic_error);
 }
 
+// The range that `triglyph sample` states. A slab with a hole has 64 or 80 triangles, none between.
+TEST(SampleShapes, HaveWithinATenthAsManyTrianglesAsWanted) {
+  std::vector<std::size_t> wanted;
+  for (std::size_t triangles = 80; triangles <= 1200; ++triangles) wanted.push_back(triangles);
+  for (std::size_t triangles = 1201; triangles < 500'000; triangles = triangles * 9 / 5) {
+    wanted.push_back(triangles);
+  }
+  for (const SampleShape shape : kShapes) {
+    for (const std::size_t triangles : wanted) {
+      for (const std::uint64_t seed : {1, 2, 3}) {
+        if (seed > 1 && shape != SampleShape::HighGenus) continue;  // their plan is the same
+        const auto made =
+            static_cast<double>(make_sample_shape(shape, triangles, seed).triangles.size());
+        EXPECT_NEAR(made / static_cast<double>(triangles), 1, 0.1)
+            << triangles << ", shape " << static_cast<int>(shape) << ", seed " << seed;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace triglyph

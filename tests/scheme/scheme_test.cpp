@@ -309,6 +309,19 @@ TEST_P(EveryScheme, ReadAtFindsWhatReadFindsThere) {
   }
 }
 
+TEST_P(EveryScheme, ASampleHoldsSomeOfTheReadings) {
+  const auto embedding = scheme();
+  const auto bound = embedding->bind(test::bumpy_ball().surface());
+  const auto sample = bound->read_sample(4);
+  if (!sample) GTEST_SKIP() << "it is read as a whole";
+  const std::vector<Reading> all = bound->read();
+  const auto precedes = [](const Reading& a, const Reading& b) { return a.anchor < b.anchor; };
+  EXPECT_TRUE(std::includes(all.begin(), all.end(), sample->begin(), sample->end(), precedes));
+  EXPECT_NEAR(static_cast<double>(sample->size()), static_cast<double>(all.size()) / 4,
+              0.1 * static_cast<double>(all.size()));
+  EXPECT_EQ(bound->read_sample(1)->size(), all.size());
+}
+
 TEST_P(EveryScheme, CallsCanBeRepeated) {
   const auto& ball = test::bumpy_ball();
   const auto scheme = relative_scheme();

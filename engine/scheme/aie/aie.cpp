@@ -7,6 +7,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
+#include "engine/base/random.h"
 #include "engine/scheme/cost_rows.h"
 #include "engine/scheme/surface_binding.h"
 
@@ -35,6 +36,8 @@ constexpr double kMaxMoveInDeviations = 1;
 constexpr double kSurely = 1 - 1e-6;
 // A group holds a quarter of the word and has a table of costs for all its values: 2^8 at most.
 constexpr int kMaxWordBits = 32;
+// Any number; it draws the edges of a sample.
+constexpr std::uint64_t kSampleSeed = 0x616965;
 
 std::array<Vec3, 4> corners_of(const Mesh& mesh, const std::array<std::uint32_t, 4>& basis) {
   return {mesh.positions[basis[0]], mesh.positions[basis[1]], mesh.positions[basis[2]],
@@ -75,6 +78,8 @@ class AieScheme::Bound final : public SurfaceBinding {
   [[nodiscard]] Embedding embed(const UnitSet& units, std::span<const Placement> placements,
                                 std::span<const Word> words) const override;
   [[nodiscard]] std::vector<Reading> read() const override;
+  [[nodiscard]] std::optional<std::vector<Reading>> read_sample(
+      std::uint32_t one_in) const override;
   [[nodiscard]] std::vector<Reading> read_at(std::span<const std::uint32_t> anchors) const override;
   [[nodiscard]] PointLists points_of(std::span<const std::uint32_t> anchors) const override;
   [[nodiscard]] std::unique_ptr<BoundScheme> moved_to(const Surface& moved) const override {
@@ -398,6 +403,14 @@ void AieScheme::Bound::read_edge(std::uint32_t edge, std::vector<Reading>& out) 
 std::vector<Reading> AieScheme::Bound::read() const {
   return parallel_collect<Reading>(surface().halfedges.edge_count(),
                                    [&](std::size_t edge, std::vector<Reading>& out) {
+                                     read_edge(static_cast<std::uint32_t>(edge), out);
+                                   });
+}
+
+std::optional<std::vector<Reading>> AieScheme::Bound::read_sample(std::uint32_t one_in) const {
+  return parallel_collect<Reading>(surface().halfedges.edge_count(),
+                                   [&](std::size_t edge, std::vector<Reading>& out) {
+                                     if (random_bits(kSampleSeed, 0, edge) % one_in != 0) return;
                                      read_edge(static_cast<std::uint32_t>(edge), out);
                                    });
 }

@@ -1,9 +1,10 @@
-#include "engine/io/mapped_file.h"
+#include "engine/io/file_bytes.h"
 
 #include <filesystem>
 #include <fstream>
 #include <string>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -39,10 +40,10 @@ class Files : public testing::Test {
   std::filesystem::path folder_;
 };
 
-TEST_F(Files, AreMappedAsTheyAre) {
+TEST_F(Files, AreReadAsTheyAre) {
   const auto path = write("a.obj", "v 1 2 3\n");
-  MappedFile file = MappedFile::open(path);
-  const MappedFile moved = std::move(file);
+  FileBytes file = FileBytes::open(path);
+  const FileBytes moved = std::move(file);
   EXPECT_EQ(std::string(moved.bytes().begin(), moved.bytes().end()), "v 1 2 3\n");
   EXPECT_EQ(MeshFile::open(path).vertex_count(), 1U);
 }
@@ -52,6 +53,34 @@ TEST_F(Files, AreRefusedWithTheReason) {
   EXPECT_EQ(reason(folder_), "is a directory, not a regular file");
   EXPECT_EQ(reason(write("empty.obj", "")), "is empty");
   EXPECT_EQ(reason("/dev/null"), "is not a regular file");
+}
+
+// What happens to a file of which another process cuts off a part, or to which it appends.
+TEST_F(Files, AreRefusedIfTheirSizeChanges) {
+  const auto path = write("a.obj", std::string(10'000'000, '#'));
+  const int descriptor = ::open(path.c_str(), O_RDONLY);
+  ASSERT_GE(descriptor, 0);
+  const auto reason_for = [&](std::size_t size) -> std::string {
+    try {
+      (void)FileBytes::read(descriptor, size, path);
+      return "read";
+    } catch (const Error& error) {
+      return error.code() == ErrorCode::Unreadable ? error.message() : "another error";
+    }
+  };
+  EXPECT_EQ(reason_for(10'000'000), "read");
+  EXPECT_EQ(reason_for(10'000'001), "was truncated while it was read");
+  EXPECT_EQ(reason_for(50'000'000), "was truncated while it was read");
+  EXPECT_EQ(reason_for(9'999'999), "grew while it was read");
+  ::close(descriptor);
+  EXPECT_EQ(reason_for(10'000'000), "cannot read: Bad file descriptor");
+}
+
+TEST_F(Files, StayInMemoryWhenTheyAreCutOff) {
+  const auto path = write("a.obj", std::string(1'000'000, '#'));
+  const FileBytes file = FileBytes::open(path);
+  std::filesystem::resize_file(path, 1);
+  EXPECT_EQ(file.bytes().back(), '#');
 }
 
 TEST_F(Files, DoNotWaitForAPipe) {

@@ -1,0 +1,115 @@
+#include "engine/marking/refusal.h"
+
+#include <cstdio>
+
+namespace triglyph {
+namespace {
+
+// Returns a number with three significant digits, for the eye.
+std::string short_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.3g", value);
+  return text;
+}
+
+std::string count_of(std::size_t count, const std::string& noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
+// Is this text that can be shown in a line: UTF-8 without control characters?
+bool is_text(std::span<const std::uint8_t> bytes) {
+  for (std::size_t i = 0; i < bytes.size();) {
+    const std::uint8_t first = bytes[i++];
+    if (first < 0x20 || first == 0x7f) return false;
+    if (first < 0x80) continue;
+    const bool is_lead = first >= 0xc2 && first < 0xf5;
+    const bool is_control = first == 0xc2 && i < bytes.size() && bytes[i] < 0xa0;
+    if (!is_lead || is_control) return false;
+    const std::size_t end = i + (first < 0xe0 ? 1 : first < 0xf0 ? 2 : 3);
+    for (; i < end; ++i) {
+      if (i >= bytes.size() || (bytes[i] & 0xc0) != 0x80) return false;
+    }
+  }
+  return true;
+}
+
+std::string carries_mark(const FoundMessage& found) {
+  const std::string text(found.message.begin(), found.message.end());
+  return "carries " + (is_text(found.message) ? '"' + text + '"' : "0x" + to_hex(found.message)) +
+         " under this key already (" + count_of(found.agreeing, "unit") +
+         (found.agreeing == 1 ? " agrees" : " agree") + "); --remark marks it again";
+}
+
+// Says what the mesh lacks for a message of one byte.
+std::string carries_nothing(const Marking& marking, const MarkOptions& options) {
+  const std::uint32_t needed = parts_for(options.format, 1);
+  const std::string text = "this mesh carries no message of any length under " + options.scheme;
+  if (marking.units_valid < needed) {
+    return text + ": it has " + count_of(marking.units_valid, "unit") +
+           ", a message of 1 byte needs " + std::to_string(needed);
+  }
+  const std::uint32_t carried =
+      marking.words.size() == needed ? marking.parts_carried : marking.way_out.least_parts_carried;
+  return text + ": its " + count_of(marking.units_valid, "unit") + " carry " +
+         std::to_string(carried) + " of the " + std::to_string(needed) +
+         " parts of a message of 1 byte";
+}
+
+std::string too_small_for_message(const Marking& marking, const MarkRequest& request) {
+  const WayOut& way_out = marking.way_out;
+  const std::string needs = count_of(marking.words.size(), "part") + " needed, ";
+  const std::string farther =
+      way_out.max_move_percent > 0
+          ? "allow moves that may be seen with --max-move " + to_text(way_out.max_move_percent)
+          : "";
+  if (way_out.message_bytes > 0) {
+    const std::uint32_t fit = parts_for(request.options.format, way_out.message_bytes);
+    return needs + std::to_string(fit) + " fit: shorten the message by " +
+           count_of(request.message().size() - way_out.message_bytes, "byte") +
+           (farther.empty() ? "" : ", or " + farther);
+  }
+  if (!farther.empty()) {
+    return needs + std::to_string(marking.parts_carried) + " carried: " + farther;
+  }
+  return carries_nothing(marking, request.options);
+}
+
+std::string too_small_for_fill(const Marking& marking, const MarkOptions& options) {
+  if (marking.units_valid == 0) return "this mesh has no unit under " + options.scheme;
+  return "none of this mesh's " + count_of(marking.units_valid, "unit") + " under " +
+         options.scheme + " can carry a part";
+}
+
+std::string too_visible(const WayOut& way_out) {
+  return "some part needs a move of " + short_text(way_out.move_needed_percent) +
+         " % of the diagonal; --max-move " + to_text(way_out.max_move_percent) + " would do";
+}
+
+std::string too_coarse(const WayOut& way_out, double number_step) {
+  const std::string wider =
+      way_out.step > 0 ? ", or mark it with --step " + to_text(way_out.step) : "";
+  return "numbers " + short_text(number_step) +
+         " apart are too coarse for the mark: export the mesh with more digits or as float64" +
+         wider;
+}
+
+}  // namespace
+
+std::string refusal(const Marking& marking, const MarkRequest& request, double number_step) {
+  switch (marking.status) {
+    case MarkStatus::TooSmall:
+      return request.is_fill() ? too_small_for_fill(marking, request.options)
+                               : too_small_for_message(marking, request);
+    case MarkStatus::AlreadyMarked:
+      return carries_mark(*marking.found);
+    case MarkStatus::TooVisible:
+      return too_visible(marking.way_out);
+    case MarkStatus::TooCoarse:
+      return too_coarse(marking.way_out, number_step);
+    case MarkStatus::Marked:
+      break;
+  }
+  return "";
+}
+
+}  // namespace triglyph
