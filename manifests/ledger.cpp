@@ -193,7 +193,7 @@ void migrate(const Database& database) {
   LedgerTransaction transaction(database);
   const auto schema = static_cast<int>(pragma(database, "user_version"));
   const bool is_new = schema == 0 && pragma(database, "schema_version") == 0;
-  if (!is_new && pragma(database, "application_id") != kApplicationId) {
+  if (schema < 0 || (!is_new && pragma(database, "application_id") != kApplicationId)) {
     throw Error(ErrorCode::Malformed, database.path, "", "is a database, but no ledger");
   }
   if (schema > kSchema) {
