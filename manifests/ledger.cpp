@@ -91,8 +91,11 @@ struct Ledger::Database {
   [[noreturn]] void fail() const {
     const int code = sqlite3_errcode(handle) & 0xff;
     const bool is_other = code == SQLITE_NOTADB || code == SQLITE_CORRUPT;
+    std::string reason = sqlite3_errmsg(handle);
+    // it may quote the file, which may be anything
+    for (char& c : reason) c = static_cast<unsigned char>(c) < 32 || c == 127 ? ' ' : c;
     throw Error(is_other ? ErrorCode::Malformed : ErrorCode::Unwritable, path, "",
-                std::string("the ledger: ") + sqlite3_errmsg(handle));
+                "the ledger: " + reason);
   }
 
   void execute(const char* sql) const {
@@ -190,7 +193,7 @@ void migrate(const Database& database) {
   LedgerTransaction transaction(database);
   const auto schema = static_cast<int>(pragma(database, "user_version"));
   const bool is_new = schema == 0 && pragma(database, "schema_version") == 0;
-  if (!is_new && pragma(database, "application_id") != kApplicationId) {
+  if (schema < 0 || (!is_new && pragma(database, "application_id") != kApplicationId)) {
     throw Error(ErrorCode::Malformed, database.path, "", "is a database, but no ledger");
   }
   if (schema > kSchema) {

@@ -1,5 +1,7 @@
 #include "manifests/record.h"
 
+#include <limits>
+
 #include "engine/base/error.h"
 #include "manifests/json_line.h"
 
@@ -10,6 +12,22 @@ using Json = nlohmann::ordered_json;
 
 [[noreturn]] void refuse(const std::string& reason) {
   throw Error(ErrorCode::Malformed, {}, "", reason);
+}
+
+// Returns a number that must be whole and fit; the library's own conversion rounds and wraps.
+template <typename Number>
+Number whole_number(const Json& json) {
+  if (!json.is_number_unsigned() ||
+      json.get<std::uint64_t>() > std::numeric_limits<Number>::max()) {
+    refuse(json.dump() + " is not a whole number that can stand there");
+  }
+  return json.get<Number>();
+}
+
+// Likewise; 0 if the key is missing.
+template <typename Number>
+Number whole_number(const Json& json, const char* key) {
+  return json.contains(key) ? whole_number<Number>(json.at(key)) : Number{0};
 }
 
 // Returns the values of all options, in the order of help.
@@ -35,7 +53,8 @@ Json units_of(std::span<const Carrier> carriers) {
 std::vector<Carrier> units_in(const Json& json, std::uint32_t parts) {
   std::vector<Carrier> carriers;
   for (const auto& unit : json) {
-    carriers.push_back({unit.at(0).get<std::uint32_t>(), unit.at(1).get<std::uint32_t>()});
+    carriers.push_back(
+        {whole_number<std::uint32_t>(unit.at(0)), whole_number<std::uint32_t>(unit.at(1))});
     const bool ascends =
         carriers.size() < 2 || carriers[carriers.size() - 2].anchor < carriers.back().anchor;
     if (!ascends || carriers.back().word >= parts) refuse("units that cannot be");
@@ -68,10 +87,10 @@ void read_run(const Json& run, Record& record) {
   seconds("write_s", times.write);
   seconds("read_back_s", times.read_back);
   seconds("measure_s", times.measure);
-  record.memory_estimate = run.value("memory_estimate", std::uint64_t{0});
-  record.peak_bytes = run.value("peak_bytes", std::uint64_t{0});
+  record.memory_estimate = whole_number<std::uint64_t>(run, "memory_estimate");
+  record.peak_bytes = whole_number<std::uint64_t>(run, "peak_bytes");
   record.directory = run.value("directory", std::string());
-  record.index = run.value("place", std::size_t{0});
+  record.index = whole_number<std::size_t>(run, "place");
 }
 
 // Returns the request of a record. From schema 1, in which some options are shares, it takes only
@@ -143,7 +162,7 @@ Json to_json(const Record& record) {
 
 Record parse_record(const std::string& line) try {
   const Json json = parse_json_line(line);
-  const int schema = json.value("schema", 0);
+  const auto schema = whole_number<std::uint8_t>(json, "schema");
   if (schema < 1 || schema > kRecordSchema) {
     refuse("not a record of schema 1 to " + std::to_string(kRecordSchema));
   }
@@ -159,17 +178,17 @@ Record parse_record(const std::string& line) try {
   file.format = file.request.options.format;
   file.file_format = json.value("file_format", std::string());
   const auto count = [&](const char* key, std::uint32_t& value) {
-    value = json.value(key, std::uint32_t{0});
+    value = whole_number<std::uint32_t>(json, key);
   };
-  file.vertices = json.value("vertices", std::uint64_t{0});
-  file.points = json.at("points").get<std::uint64_t>();
-  file.faces = json.at("faces").get<std::uint64_t>();
+  file.vertices = whole_number<std::uint64_t>(json, "vertices");
+  file.points = whole_number<std::uint64_t>(json.at("points"));
+  file.faces = whole_number<std::uint64_t>(json.at("faces"));
   count("candidates", file.candidates);
   count("units_valid", file.units_valid);
   count("units_assigned", file.units_assigned);
   count("units_bound", file.units_bound);
-  file.parts = json.at("parts").get<std::uint32_t>();
-  file.units_embedded = json.at("units_embedded").get<std::uint32_t>();
+  file.parts = whole_number<std::uint32_t>(json.at("parts"));
+  file.units_embedded = whole_number<std::uint32_t>(json.at("units_embedded"));
   const auto number = [&](const char* key, double& value) { value = json.value(key, 0.0); };
   number("cost_max", file.cost_max);
   number("cost_sum", file.cost_sum);

@@ -18,13 +18,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Throws Error Usage unless the file is absent, empty or begins with a record, which may be cut off
+// Throws Error Usage unless the file is empty or begins with a record, which may be cut off
 // if it is all there is.
 void check_holds_records(const fs::path& path) {
+  errno = 0;
   std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw Error(ErrorCode::Unwritable, path, "", system_reason(errno));
   std::string line;
   try {
-    if (!stream || !read_line(stream, line)) return;
+    if (!read_line(stream, line)) return;
     if (stream.eof() && line.starts_with("{\"schema\":")) return;
     (void)parse_record(line);
   } catch (const Error&) {
@@ -102,7 +104,9 @@ std::function<std::optional<Record>()> items_of_ledger(const fs::path& path) {
 
 // Removes what stands after the last newline: a worker died while it wrote that.
 void cut_off_torn_line(const fs::path& path) {
+  errno = 0;
   std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw Error(ErrorCode::Unwritable, path, "", system_reason(errno));
   std::string line;
   std::uint64_t end = 0;  // of the whole lines
   while (read_line(stream, line) && !stream.eof()) end += line.size() + 1;
@@ -138,6 +142,7 @@ void RecordsFile::finish() {
   std::error_code ignored;
   if (!fs::is_regular_file(path_, ignored)) return;
   std::ifstream stream(path_, std::ios::binary);
+  if (!stream) fail_to_write(path_);
   const std::vector<Place> lines = sorted_lines(stream);
   std::uint64_t end = 0;  // of the lines so far, if they lie as they should
   for (const Place& line : lines) end = line.begin == end ? end + line.size + 1 : ~std::uint64_t{0};

@@ -88,8 +88,9 @@ count_end() {
   # when all that is written fails, so does the message
   [[ $end == SILENT && $name == write*+ ]] && end=told
   cp "$work/errors" "$work/message"
+  [[ $end != INCOMPLETE ]] || cp "$work/difference" "$work/found"
   if [[ $verb == mark ]]; then
-    [[ $end == whole ]] || is_mended || end=LASTING
+    [[ $end == whole ]] || is_mended || [[ $end == INCOMPLETE ]] || end=LASTING
     reset
   fi
   row[$end]=$((${row[$end]:-0} + 1))
@@ -97,7 +98,8 @@ count_end() {
   if [[ $end != whole && $end != told ]]; then
     printf '%s of %s: exit %d, %s\n' "$name" "$verb" "$status" "$end"
     sed 's/^/  | /' "$work/message" | head -5 | cut -c -200
-    [[ $end == CRASH || $end == SILENT || $end == HANG ]] || head -4 "$work/difference" | cut -c -160 | sed 's/^/  > /'
+    [[ $end != LASTING ]] || mv "$work/difference" "$work/found"
+    [[ $end == CRASH || $end == SILENT || $end == HANG ]] || head -4 "$work/found" | cut -c -160 | sed 's/^/  > /'
   fi
 }
 

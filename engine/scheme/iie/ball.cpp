@@ -101,7 +101,8 @@ Vec3 BallGround::mean_of(std::span<const std::uint32_t> points) const {
 // heaps, and to look at all of them from all of them would take for ever.
 std::size_t most_triangles_in(double radius, double edge) {
   const double share = edge > 0 ? radius / edge : 0;
-  return static_cast<std::size_t>(std::min(kCrowd * share * share, kMostTriangles));
+  // in this order, a share that is no number gives the limit
+  return static_cast<std::size_t>(std::min(kMostTriangles, kCrowd * share * share));
 }
 
 double Ball::farthest(const CapMoves& moves) const {
