@@ -60,6 +60,10 @@ judge() {
     ((++torn))
   fi
   state >"$work/state" || true
+  if cmp -s "$work/reference" "$work/state"; then
+    reset
+    return
+  fi
   marks=$(grep '^mark ' "$work/state" | cut -d' ' -f2 | uniq -d | wc -l)
   ((doubled += marks)) || true
   if ! differences=$(diff "$work/reference" "$work/state"); then
