@@ -87,7 +87,7 @@ kill_one() {
   esac || true
   wait "$supervisor" 2>/dev/null || true
   # a process that is being killed holds its locks to the end, when it is gone or a zombie
-  while grep -qs '^State:[[:space:]]*[^Z]' "/proc/${worker:-none}/status"; do sleep 0.002; done
+  while grep -qs '^State:[[:space:]]*[^Z[:space:]]' "/proc/${worker:-none}/status"; do sleep 0.002; done
 }
 
 # Starts the command, and kills it after a random part of the time that it takes.
