@@ -2,10 +2,11 @@
 // file is renamed when it is complete.
 //
 // The order is: write, fdatasync of the file, rename. A file that has its name is therefore whole,
-// also after a power failure. The directory is not synchronised: that costs 1.2 to 1.5 ms a file,
-// 11 % of marking meshes of 2,000 triangles, and saves only that after a power failure the last
-// names are missing or still those of the former files. The ledger, which compares contents, then
-// has these made again.
+// also after a power failure. The directory is not synchronised: alone that takes 0.1 to 0.7 ms a
+// file, and six pairs of runs over 200 meshes of 2,000 triangles on a busy machine differed by -27
+// % to 15 %, 3 % in all, which settles nothing. It would save only that after a power failure the
+// last names are missing or still those of the former files. The ledger, which compares contents,
+// then has these made again.
 #pragma once
 
 #include <filesystem>
