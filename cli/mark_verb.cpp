@@ -139,7 +139,7 @@ class MarkReport {
   void delivered(const Record& record) {
     const bool failed = !record.file.is_marked();
     tally_.clear_bar();
-    if (arguments_.json) std::cout << to_line(to_json(record));
+    if (arguments_.json) std::cout << line_of(record);
     if (has_table_) print_table_row(std::cout, record);
     std::cout.flush();  // what is delivered must outlive this worker
     if (!record.file.error.empty()) {

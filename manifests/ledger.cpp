@@ -5,6 +5,7 @@
 #include <fstream>
 #include <mutex>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include <fcntl.h>
@@ -86,7 +87,23 @@ struct Ledger::Database {
   sqlite3* handle = nullptr;
   mutable std::mutex mutex;
 
-  ~Database() { sqlite3_close_v2(handle); }
+  // Prepared statements by their text: preparing one costs as much as running it.
+  mutable std::unordered_map<std::string, sqlite3_stmt*> statements;
+
+  ~Database() {
+    for (const auto& [sql, statement] : statements) sqlite3_finalize(statement);
+    sqlite3_close_v2(handle);
+  }
+
+  [[nodiscard]] sqlite3_stmt* prepared(const std::string& sql) const {
+    sqlite3_stmt*& statement = statements[sql];
+    if (statement == nullptr &&
+        sqlite3_prepare_v3(handle, sql.c_str(), -1, SQLITE_PREPARE_PERSISTENT, &statement,
+                           nullptr) != SQLITE_OK) {
+      fail();
+    }
+    return statement;
+  }
 
   [[noreturn]] void fail() const {
     const int code = sqlite3_errcode(handle) & 0xff;
@@ -110,12 +127,11 @@ class LedgerStatement {
  public:
   template <typename Database>
   LedgerStatement(const Database& database, const std::string& sql)
-      : fail_([&database] { database.fail(); }) {
-    if (sqlite3_prepare_v2(database.handle, sql.c_str(), -1, &statement_, nullptr) != SQLITE_OK) {
-      fail_();
-    }
+      : fail_([&database] { database.fail(); }), statement_(database.prepared(sql)) {}
+  ~LedgerStatement() {
+    sqlite3_reset(statement_);
+    sqlite3_clear_bindings(statement_);
   }
-  ~LedgerStatement() { sqlite3_finalize(statement_); }
   LedgerStatement(const LedgerStatement&) = delete;
   LedgerStatement& operator=(const LedgerStatement&) = delete;
 
@@ -156,7 +172,7 @@ class LedgerStatement {
   }
 
   std::function<void()> fail_;
-  sqlite3_stmt* statement_ = nullptr;
+  sqlite3_stmt* statement_;
   int bound_ = 0;
 };
 
@@ -165,7 +181,7 @@ template <typename Database>
 class LedgerTransaction {
  public:
   explicit LedgerTransaction(const Database& database) : database_(database) {
-    database_.execute("BEGIN IMMEDIATE");
+    LedgerStatement(database_, "BEGIN IMMEDIATE").step();
   }
   ~LedgerTransaction() {
     if (!done_) sqlite3_exec(database_.handle, "ROLLBACK", nullptr, nullptr, nullptr);
@@ -173,7 +189,7 @@ class LedgerTransaction {
   LedgerTransaction(const LedgerTransaction&) = delete;
   LedgerTransaction& operator=(const LedgerTransaction&) = delete;
   void commit() {
-    database_.execute("COMMIT");
+    LedgerStatement(database_, "COMMIT").step();
     done_ = true;
   }
 

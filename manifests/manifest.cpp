@@ -231,7 +231,8 @@ std::size_t check_plan(JobSource& jobs, std::span<const OwnFile> own_files) {
   const auto hash = [](const std::string& name) { return std::hash<std::string>{}(name); };
   const auto target_of = [](const fs::path& path) -> std::optional<std::string> {
     std::error_code error;
-    const fs::path target = fs::canonical(path, error);  // the target of a symbolic link
+    if (!fs::is_symlink(path, error)) return std::nullopt;
+    const fs::path target = fs::canonical(path, error);
     return error ? std::nullopt : std::optional(target.string());
   };
   const auto use = [&](const std::string& name, unsigned as, unsigned excluded,

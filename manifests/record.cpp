@@ -160,6 +160,10 @@ Json to_json(const Record& record) {
   return json;
 }
 
+std::string line_of(const Record& record) {
+  return record.line.empty() ? to_line(to_json(record)) : record.line;
+}
+
 Record parse_record(const std::string& line) try {
   const Json json = parse_json_line(line);
   const auto schema = whole_number<std::uint8_t>(json, "schema");

@@ -24,7 +24,11 @@ struct Record {
   std::string directory = {};         // where the run stood, to which relative names refer
   std::string task = {};              // see task_hash(); not written
   bool is_kept = false;               // an earlier run did it; not written
+  std::string line = {};              // to_line(to_json()) of it, if that was needed before
 };
+
+// Returns the record as a line of JSON with its newline: Record::line, or else a new one.
+[[nodiscard]] std::string line_of(const Record& record);
 
 // Returns the record as JSON of the current schema.
 [[nodiscard]] nlohmann::ordered_json to_json(const Record& record);

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cstdint>
 #include <deque>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/base/error.h"
@@ -47,13 +49,26 @@ struct Place {
               "the record cannot be written: " + system_reason(errno == 0 ? EIO : errno));
 }
 
+// Returns the place in the run that a line of this file ends with, `"place":7}}`.
+std::uint64_t place_in(const std::string& line) {
+  constexpr std::string_view kKey = "\"place\":";
+  const std::size_t key = line.rfind(kKey);
+  std::uint64_t place = 0;
+  if (key != line.npos) {
+    const char* end = line.data() + line.size();
+    const auto [rest, error] = std::from_chars(line.data() + key + kKey.size(), end, place);
+    if (error == std::errc() && std::string_view(rest, end) == "}}") return place;
+  }
+  return parse_record(line).index;
+}
+
 // Returns the lines ascending by place, the last one of each place.
 std::vector<Place> sorted_lines(std::istream& stream) {
   std::vector<Place> lines;
   std::string line;
   std::uint64_t begin = 0;
   while (read_line(stream, line)) {
-    lines.push_back({parse_record(line).index, begin, line.size()});
+    lines.push_back({place_in(line), begin, line.size()});
     begin += line.size() + 1;
   }
   const auto by_place = [](const Place& a, const Place& b) { return a.place < b.place; };
@@ -131,7 +146,7 @@ RecordsFile::RecordsFile(const fs::path& path, bool append) : path_(path) {
 
 void RecordsFile::write(const Record& record) {
   errno = 0;
-  stream_ << to_line(to_json(record)) << std::flush;
+  stream_ << line_of(record) << std::flush;
   if (!stream_) fail_to_write(path_);
 }
 

@@ -39,13 +39,19 @@ std::string options_text(const MarkOptions& options) {
 }  // namespace
 
 std::string canonical_name(const fs::path& path) {
-  std::error_code error;
-  const fs::path absolute = fs::absolute(path, error);
-  if (error) throw Error(ErrorCode::Unreadable, path, "", error.message());
-  fs::path directory = fs::weakly_canonical(absolute.parent_path(), error);
-  if (error)
-    directory = absolute.parent_path();  // as below a file, or where it is forbidden to look
-  return (directory / absolute.filename()).lexically_normal().string();
+  // the names of a run mostly lie in one folder after another, and looking a folder up takes a
+  // system call for each part of its name
+  thread_local std::pair<fs::path, fs::path> last;
+  fs::path parent = path.parent_path();
+  if (last.second.empty() || last.first != parent) {
+    std::error_code error;
+    const fs::path absolute = fs::absolute(parent.empty() ? "." : parent, error);
+    if (error) throw Error(ErrorCode::Unreadable, path, "", error.message());
+    fs::path directory = fs::weakly_canonical(absolute, error);
+    if (error) directory = absolute;  // as below a file, or where it is forbidden to look
+    last = {std::move(parent), std::move(directory)};
+  }
+  return (last.second / path.filename()).lexically_normal().string();
 }
 
 std::string task_hash(const MarkRequest& request) {
@@ -64,7 +70,7 @@ void enter_record(Ledger& ledger, std::int64_t run, const Record& record) {
   item.key = file.key_fingerprint;
   item.status = name_of(file.status);
   item.output_hash = file.output_hash;
-  item.record = to_line(to_json(record));
+  item.record = line_of(record);
   item.record.pop_back();
   item.run = run;
   item.place = record.index;

@@ -67,7 +67,7 @@ void enter_record(Ledger& ledger, std::int64_t run, const Record& record);
 [[nodiscard]] std::string task_hash(const MarkRequest& request);
 
 // Returns the absolute name of a file with the symbolic links of its folder resolved. The file need
-// not exist.
+// not exist. A thread looks a folder up once while it asks for names in it.
 [[nodiscard]] std::string canonical_name(const std::filesystem::path& path);
 
 }  // namespace triglyph

@@ -44,8 +44,8 @@ class MarkWork {
     const BoardEntry entry(context_.order, item.index);
     FileMarking marking(item.job.mesh, item.job.out, item.job.request);
     try {
-      if (!stop_ && decide(item, marking)) return;
-      mark(item, marking);
+      if (stop_ || !decide(item, marking)) mark(item, marking);
+      return;
     } catch (const Error& error) {  // of the ledger or a companion: then there must be no output
       marking.refuse(file_status(name_of(error.code())).value_or(FileStatus::Failed), error.what());
     } catch (const Stopped&) {
@@ -102,7 +102,10 @@ class MarkWork {
     describe(item, marking);
     const bool is_worth_a_line = item.record.file.status != FileStatus::Interrupted &&
                                  item.record.file.status != FileStatus::Exists;
-    if (context_.resume != nullptr && is_worth_a_line) context_.resume->enter(item.record);
+    if (context_.resume != nullptr && is_worth_a_line) {
+      item.record.line = line_of(item.record);  // once for the ledger, the records and the output
+      context_.resume->enter(item.record);
+    }
     if (!item.record.file.is_marked()) return;
     marking.publish(context_.keeps_times);
     if (marking.result().is_marked() || context_.resume == nullptr) return;
@@ -119,6 +122,7 @@ class MarkWork {
     record.peak_bytes = peak_bytes();
     record.directory = directory_;
     record.task = task_hash(item.job.request);
+    record.line.clear();
   }
 
   const Key& key_;
