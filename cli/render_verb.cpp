@@ -6,9 +6,11 @@
 #include <vector>
 
 #include "cli/app.h"
+#include "cli/run_arguments.h"
 #include "cli/sibling.h"
 #include "cli/verbs.h"
 #include "engine/base/error.h"
+#include "manifests/ledger.h"
 #include "manifests/pairs.h"
 
 namespace triglyph {
@@ -40,10 +42,25 @@ std::optional<std::string> take_option(std::vector<std::string>& words, const st
   return std::nullopt;
 }
 
-// Draws every pair into the folder that --out names; all other options are the renderer's.
+// Notes the run in the ledger, if one is named. Returns its number.
+std::int64_t begin_logged(std::optional<Ledger>& ledger, const std::optional<std::string>& path) {
+  if (!path) return 0;
+  LedgerRun run;
+  run.verb = "render";
+  run.command = command_line();
+  std::error_code ignored;
+  run.directory = fs::current_path(ignored).string();
+  run.version = TRIGLYPH_VERSION;
+  return ledger.emplace(*path).begin_run(run);
+}
+
+// Draws every pair into the folder that --out names; --ledger notes the run, and all other options
+// are the renderer's.
 int draw_all(const std::vector<std::string>& names, std::vector<std::string> options) {
   const std::optional<std::string> out = take_option(options, "--out");
   if (!out) throw Error(ErrorCode::Usage, {}, "", "--out names the folder for the pictures");
+  std::optional<Ledger> ledger;
+  const std::int64_t run = begin_logged(ledger, take_option(options, "--ledger"));
   const PairSource next = pairs_of(names);
   options.insert(options.begin(), "--batch");
   RenderBatch batch(options);
@@ -67,7 +84,9 @@ int draw_all(const std::vector<std::string>& names, std::vector<std::string> opt
       }));
   std::cerr << "triglyph: " << pictures.size() << " pairs: " << drawn << " drawn, "
             << pictures.size() - drawn << " failed\n";
-  return all_well && drawn == pictures.size() ? kDone : kSomeFailed;
+  const bool is_done = all_well && drawn == pictures.size();
+  if (ledger) ledger->end_run(run, is_done ? "done" : "some failed");
+  return is_done ? kDone : kSomeFailed;
 }
 
 int run_render(const std::vector<std::string>& words) {

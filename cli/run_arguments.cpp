@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t kMostKinds = 24;
 enum Counter : std::size_t { kRunId = kMostKinds, kStarted, kFailed, kKept, kBytes };
 
-std::string& command_line() {
+std::string& stored_command_line() {
   static std::string text;
   return text;
 }
@@ -203,9 +203,13 @@ void LoggedRun::end(int exit_code) const {
 }
 
 void set_command_line(int argc, char** argv) {
-  std::string& text = command_line();
+  std::string& text = stored_command_line();
   text.clear();
   for (int i = 0; i < argc; ++i) text += (i == 0 ? "" : " ") + quoted(argv[i]);
+}
+
+const std::string& command_line() {
+  return stored_command_line();
 }
 
 void check_standard_output() {

@@ -104,6 +104,7 @@ class LoggedRun {
 
 // The arguments of this process as a shell would take them, for the ledger. To be set by main().
 void set_command_line(int argc, char** argv);
+[[nodiscard]] const std::string& command_line();
 
 // Throws Error Unwritable if standard output does not take what is written to it.
 void check_standard_output();

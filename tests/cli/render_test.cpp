@@ -119,7 +119,9 @@ TEST_F(CliRender, DrawsEveryPairOfFoldersAndRecords) {
   EXPECT_EQ(triglyph("render in o --out p --width 64 --samples 1"), 0);
   EXPECT_TRUE(fs::exists(folder_ / "p/a.obj.png"));
   EXPECT_TRUE(fs::exists(folder_ / "p/sub/b.obj.png"));
-  EXPECT_EQ(triglyph("render r.jsonl --out q --width 64 --samples 1"), 0);
+  EXPECT_EQ(triglyph("render r.jsonl --out q --width 64 --samples 1 --ledger o.ledger"), 0);
+  EXPECT_EQ(triglyph("ledger runs o.ledger"), 0);
+  EXPECT_NE(test::read_all(folder_ / ".out").find("\"verb\":\"render\""), std::string::npos);
   EXPECT_TRUE(fs::exists(folder_ / "q/o/sub/b.obj.png"));
   fs::remove(folder_ / "o/a.obj");
   EXPECT_EQ(triglyph("render in o --out p --width 64 --samples 1"), 3);

@@ -2,7 +2,7 @@
 # fuzz.sh BUILD SECONDS: runs all fuzz targets, as many side by side as there are processors, for this time
 # in total, beginning from tests/fuzz/corpus. Fails if one crashes, leaks, takes more than 10 s or 2 GB
 # for an input, or breaks its promise; the input stays in BUILD/fuzz/findings. What was learnt stays in
-# BUILD/fuzz/corpus for the next time.
+# BUILD/fuzz/corpus for the next time. FUZZ_SEED makes the inputs the same each time.
 set -euo pipefail
 build=$(cd "$1" && pwd)
 seconds=$2
@@ -23,6 +23,7 @@ run() {
   local target=$1 log=$build/fuzz/$1.log options=()
   mkdir -p "$build/fuzz/corpus/$target" "$build/fuzz/findings"
   [[ ! -f $corpus/$target.dict ]] || options+=(-dict="$corpus/$target.dict")
+  [[ -z ${FUZZ_SEED:-} ]] || options+=(-seed="$FUZZ_SEED")
   "$build/tests/fuzz/triglyph_fuzz_$target" "$build/fuzz/corpus/$target" "$corpus/$target" \
     -max_total_time="$each" -timeout=10 -rss_limit_mb=2048 -max_len=20000 -print_final_stats=1 -verbosity=1 \
     -artifact_prefix="$build/fuzz/findings/$target-" "${options[@]}" >"$log" 2>&1
