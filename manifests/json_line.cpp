@@ -5,6 +5,7 @@
 
 #include "engine/base/error.h"
 #include "engine/message/key.h"
+#include "engine/message/words.h"
 
 namespace triglyph {
 namespace {
