@@ -14,6 +14,7 @@
 #include "cli/screen.h"
 #include "cli/verbs.h"
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 
 namespace triglyph {
 namespace {

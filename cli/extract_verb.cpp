@@ -8,6 +8,7 @@
 #include "cli/run_arguments.h"
 #include "cli/screen.h"
 #include "cli/verbs.h"
+#include "engine/base/text.h"
 #include "manifests/file_runs.h"
 #include "manifests/inputs.h"
 #include "manifests/json_line.h"
@@ -24,12 +25,6 @@ struct ExtractArguments {
   KeysArgument keys;
   RunArguments run;
 };
-
-// Returns printable text (UTF-8) unchanged, anything else in hexadecimal.
-std::string shown(const Message& message) {
-  const std::string text(message.begin(), message.end());
-  return is_printable(text) ? "\"" + text + "\"" : "0x" + to_hex(message);
-}
 
 // Returns the exponent of the least power of two that is not below the probability.
 int power_of_two_above(double chance) {
@@ -77,9 +72,8 @@ enum Kind : std::size_t { kCarries, kCarriesNone, kFailedFirst };
 
 std::vector<std::string_view> kinds_of_results() {
   std::vector<std::string_view> kinds = {"with a mark", "without a mark"};
-  for (int status = 0; status <= static_cast<int>(FileStatus::Interrupted); ++status) {
-    kinds.push_back(name_of(static_cast<FileStatus>(status)));
-  }
+  const auto statuses = file_status_names();
+  kinds.insert(kinds.end(), statuses.begin(), statuses.end());
   return kinds;
 }
 

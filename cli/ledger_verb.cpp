@@ -24,10 +24,12 @@ struct LedgerArguments {
 };
 
 void export_items(const Ledger& ledger) {
-  ledger.for_each_item([](const LedgerItem& item) {
-    std::cout << item.record << "\n";
+  std::string last;
+  while (std::optional<LedgerItem> item = ledger.find_after(last)) {
+    std::cout << item->record << "\n";
     check_standard_output();
-  });
+    last = std::move(item->target);
+  }
 }
 
 void list_marks(const Ledger& ledger) {

@@ -8,6 +8,7 @@
 #include "cli/sibling.h"
 #include "cli/verbs.h"
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 #include "manifests/json_line.h"
 #include "manifests/records_file.h"
 #include "manifests/run.h"
@@ -113,19 +114,13 @@ std::vector<std::string> renderer_arguments(const MarkArguments& arguments) {
   return words;
 }
 
-std::vector<std::string_view> status_names() {
-  std::vector<std::string_view> names;
-  for (int status = 0; status <= static_cast<int>(FileStatus::Interrupted); ++status) {
-    names.push_back(name_of(static_cast<FileStatus>(status)));
-  }
-  return names;
-}
-
 // What one worker of a run of marking prints, writes and draws.
 class MarkReport {
  public:
   MarkReport(const MarkArguments& arguments, const WorkOrder& order, std::size_t total)
-      : arguments_(arguments), tally_(arguments.run, order, total, status_names()) {
+      : arguments_(arguments),
+        tally_(arguments.run, order, total,
+               {file_status_names().begin(), file_status_names().end()}) {
     if (!arguments.records.empty()) records_.emplace(arguments.records, !order.is_first);
     if (!arguments.pictures.empty()) pictures_.emplace(renderer_arguments(arguments));
     has_table_ = !arguments.json && !arguments.run.is_quiet();

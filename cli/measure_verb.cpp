@@ -9,6 +9,7 @@
 #include "cli/run_arguments.h"
 #include "cli/screen.h"
 #include "cli/verbs.h"
+#include "engine/base/text.h"
 #include "engine/io/mesh_file.h"
 #include "engine/mesh/surface_diagonal.h"
 #include "engine/metric/comparison.h"

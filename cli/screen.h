@@ -2,8 +2,6 @@
 #pragma once
 
 #include <iosfwd>
-#include <string>
-#include <string_view>
 
 #include "manifests/record.h"
 
@@ -33,12 +31,5 @@ class ProgressBar {
   double start_s_ = 0;
   bool visible_;
 };
-
-// Returns the text as a terminal may show it: valid UTF-8 without control characters is unchanged,
-// any other byte becomes "\\x1b".
-[[nodiscard]] std::string printable(std::string_view text);
-
-// Returns whether the text is valid UTF-8 without control characters, and not empty.
-[[nodiscard]] bool is_printable(std::string_view text);
 
 }  // namespace triglyph

@@ -8,6 +8,7 @@
 #include "cli/screen.h"
 #include "cli/verbs.h"
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 #include "manifests/file_runs.h"
 #include "manifests/inputs.h"
 #include "manifests/json_line.h"
@@ -41,7 +42,8 @@ RecordSource records_in(std::span<const std::string> inputs) {
   };
 }
 
-// Returns the records that the ledger has of the files.
+// Returns the records that the ledger has of the files; for a file that it does not know, one that
+// is not marked.
 RecordSource records_of(const std::vector<fs::path>& files, const fs::path& ledger_path) {
   auto ledger = std::make_shared<Ledger>(ledger_path);
   auto next = std::make_shared<std::size_t>(0);
@@ -52,7 +54,6 @@ RecordSource records_of(const std::vector<fs::path>& files, const fs::path& ledg
     Record record;
     if (item) record = parse_record(item->record);
     record.file.out = file;
-    if (!item) record.file.error = "the ledger knows no such output";
     return record;
   };
 }
@@ -156,10 +157,9 @@ int run_verify(const VerifyArguments& arguments) {
           tally.clear_bar();
           print(arguments, record, found);
           check_standard_output();  // nobody is there to read the rest
-          const bool is_unknown = record.file.key_fingerprint.empty() && record.file.parts == 0 &&
-                                  !record.file.error.empty() && !files.empty();
-          const bool good = !is_unknown && (found.verdict == FileVerdict::Intact ||
-                                            found.verdict == FileVerdict::NotMarked);
+          // who asks for a file by its name expects a mark in it
+          const bool good = found.verdict == FileVerdict::Intact ||
+                            (files.empty() && found.verdict == FileVerdict::NotMarked);
           tally.count(static_cast<std::size_t>(found.verdict), !good, false, record.file.out);
         },
         order.board->stop());

@@ -8,6 +8,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/output_file.h"
+#include "engine/base/text.h"
 #include "engine/io/file_bytes.h"
 
 namespace triglyph {
@@ -100,9 +101,7 @@ bool have_same_content(const fs::path& a, const fs::path& b) {
 }  // namespace
 
 std::vector<fs::path> companions_of(const fs::path& mesh) {
-  std::string ending = mesh.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string ending = lower_case_ending(mesh);
   const bool is_obj = ending == ".obj";
   if (!is_obj && ending != ".ply") return {};
   const FileBytes file = FileBytes::open(mesh);

@@ -27,7 +27,7 @@ void attempt(FileItem& item, const Work& work) {
   try {
     work();
   } catch (const Error& error) {
-    fail(file_status(name_of(error.code())).value_or(FileStatus::Failed), error.what());
+    fail(file_status(error.code()), error.what());
   } catch (const Stopped&) {  // then there is no result
     return;
   } catch (const std::bad_alloc&) {

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <iterator>
 #include <string_view>
 #include <unordered_set>
 
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 #include "manifests/folder_walk.h"
 #include "manifests/manifest.h"
 
@@ -72,10 +72,7 @@ std::vector<NamedFile> files_named(const std::string& name) {
 
 bool is_mesh_name(const fs::path& path) {
   constexpr std::array<std::string_view, 4> kEndings = {".obj", ".off", ".ply", ".stl"};
-  std::string ending = path.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
+  return std::find(kEndings.begin(), kEndings.end(), lower_case_ending(path)) != kEndings.end();
 }
 
 void check_name(const std::string& name) {

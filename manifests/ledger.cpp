@@ -50,7 +50,6 @@ CREATE TABLE items (
   place INTEGER NOT NULL,
   finished TEXT NOT NULL DEFAULT (strftime('%Y-%m-%dT%H:%M:%SZ', 'now'))
 ) WITHOUT ROWID;
-CREATE INDEX items_of_run ON items (run, place);
 CREATE TABLE marks (
   number INTEGER PRIMARY KEY AUTOINCREMENT,
   message_hex TEXT NOT NULL,
@@ -360,18 +359,17 @@ std::optional<LedgerMark> Ledger::mark_of(std::string_view output_hash) const {
   return mark_in(row);
 }
 
-void Ledger::for_each_item(const std::function<void(const LedgerItem&)>& visit) const {
+std::optional<LedgerItem> Ledger::find_after(std::string_view target) const {
   const std::lock_guard lock(database_->mutex);
-  LedgerStatement row(*database_, std::string(kItemColumns) + "ORDER BY target");
-  while (row.step()) visit(item_in(row));
-}
-
-void Ledger::for_each_item_of(std::int64_t run,
-                              const std::function<void(const LedgerItem&)>& visit) const {
-  const std::lock_guard lock(database_->mutex);
-  LedgerStatement row(*database_, std::string(kItemColumns) + "WHERE run = ? ORDER BY place");
-  row.number(run);
-  while (row.step()) visit(item_in(row));
+  LedgerStatement row(*database_,
+                      std::string(kItemColumns) + "WHERE target > ? ORDER BY target LIMIT 1");
+  if (!row.bytes(target).step()) return std::nullopt;
+  LedgerItem item = item_in(row);
+  // a damaged file must not lead its readers in circles
+  if (item.target <= target) {
+    throw Error(ErrorCode::Malformed, path_, "", "the ledger: its items are out of order");
+  }
+  return item;
 }
 
 void Ledger::for_each_mark(const std::function<void(const LedgerMark&)>& visit) const {

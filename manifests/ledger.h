@@ -83,11 +83,12 @@ class Ledger {
   // Returns the mark that was issued with this content, if any.
   [[nodiscard]] std::optional<LedgerMark> mark_of(std::string_view output_hash) const;
 
-  // Call the function for every item, ascending by name of the output, or for those of a run,
-  // ascending by place; for every mark or run, ascending by number.
-  void for_each_item(const std::function<void(const LedgerItem&)>& visit) const;
-  void for_each_item_of(std::int64_t run,
-                        const std::function<void(const LedgerItem&)>& visit) const;
+  // Returns the first item whose output's name is greater, by bytes; nothing after the last. From
+  // "" on, this yields all items in the order of their names. Throws Error Malformed for a damaged
+  // ledger.
+  [[nodiscard]] std::optional<LedgerItem> find_after(std::string_view target) const;
+
+  // Call the function for every mark or run, ascending by number.
   void for_each_mark(const std::function<void(const LedgerMark&)>& visit) const;
   void for_each_run(const std::function<void(const LedgerRun&)>& visit) const;
 

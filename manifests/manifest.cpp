@@ -42,6 +42,62 @@ fs::path place_below(const fs::path& directory, const fs::path& mesh, const fs::
   return directory / (inside ? relative : mesh.filename());
 }
 
+// The names that a run uses, by hash, and for what.
+class NameUses {
+ public:
+  // Adds a file of the run itself. Throws Error Usage if another has this name.
+  void add_own(const OwnFile& own) {
+    for (const std::string& name : names_of(own.path)) {
+      const unsigned excluded = own.is_written ? kInput | kOutput : kOutput;
+      use(name, own.is_written ? kOutput : kInput, excluded, own.path,
+          "two files of the run have this name");
+      own_.emplace(hash(name), own.what);
+    }
+  }
+
+  // Adds a job. Throws Error Usage if its output would overwrite what was added, or the other way
+  // round.
+  void add_job(const Job& job) {
+    for (const std::string& name : names_of(job.mesh)) {
+      use(name, kInput, kOutput, job.mesh, "an output of the run would overwrite this mesh");
+    }
+    const std::string out =
+        canonical_name(job.out);  // a link of this name is replaced, not followed
+    use(out, 0, kInput, job.out, "the output would overwrite a mesh of the run");
+    use(out, kOutput, kOutput, job.out, "two meshes of the run have this output");
+  }
+
+ private:
+  static constexpr unsigned kInput = 1;
+  static constexpr unsigned kOutput = 2;
+
+  static std::size_t hash(const std::string& name) { return std::hash<std::string>{}(name); }
+
+  // Returns the name of a file, and that of its target if it is a symbolic link.
+  static std::vector<std::string> names_of(const fs::path& path) {
+    std::vector<std::string> names = {canonical_name(path)};
+    std::error_code error;
+    if (!fs::is_symlink(path, error)) return names;
+    const fs::path target = fs::canonical(path, error);
+    if (!error && target != names[0]) names.push_back(target.string());
+    return names;
+  }
+
+  void use(const std::string& name, unsigned as, unsigned excluded, const fs::path& path,
+           const std::string& clash) {
+    unsigned& known = uses_[hash(name)];
+    if ((known & excluded) != 0) {
+      const auto own = own_.find(hash(name));
+      throw Error(ErrorCode::Usage, path, "",
+                  own == own_.end() ? clash : "is " + own->second + " of the run as well");
+    }
+    known |= as;
+  }
+
+  std::unordered_map<std::size_t, unsigned> uses_;
+  std::unordered_map<std::size_t, std::string> own_;  // what the run's own files are
+};
+
 }  // namespace
 
 fs::path glob_root(const fs::path& pattern) {
@@ -224,51 +280,12 @@ std::optional<Job> MeshList::next() {
 }
 
 std::size_t check_plan(JobSource& jobs, std::span<const OwnFile> own_files) {
-  constexpr unsigned kInput = 1;
-  constexpr unsigned kOutput = 2;
-  std::unordered_map<std::size_t, unsigned> uses;         // by hash of a canonical name
-  std::unordered_map<std::size_t, std::string> own_uses;  // likewise: what it is
-  const auto hash = [](const std::string& name) { return std::hash<std::string>{}(name); };
-  const auto target_of = [](const fs::path& path) -> std::optional<std::string> {
-    std::error_code error;
-    if (!fs::is_symlink(path, error)) return std::nullopt;
-    const fs::path target = fs::canonical(path, error);
-    return error ? std::nullopt : std::optional(target.string());
-  };
-  const auto use = [&](const std::string& name, unsigned as, unsigned excluded,
-                       const fs::path& path, const std::string& clash) {
-    const std::size_t id = hash(name);
-    unsigned& known = uses[id];
-    if ((known & excluded) != 0) {
-      const auto own = own_uses.find(id);
-      throw Error(ErrorCode::Usage, path, "",
-                  own == own_uses.end() ? clash : "is " + own->second + " of the run as well");
-    }
-    known |= as;
-  };
-  for (const OwnFile& own : own_files) {
-    const unsigned as = own.is_written ? kOutput : kInput;
-    const unsigned excluded = own.is_written ? kInput | kOutput : kOutput;
-    const std::string name = canonical_name(own.path);
-    use(name, as, excluded, own.path, "two files of the run have this name");
-    own_uses.emplace(hash(name), own.what);
-    const auto target = target_of(own.path);
-    if (!target || *target == name) continue;
-    use(*target, as, excluded, own.path, "two files of the run have this name");
-    own_uses.emplace(hash(*target), own.what);
-  }
+  NameUses names;
+  for (const OwnFile& own : own_files) names.add_own(own);
   std::size_t count = 0;
   while (const std::optional<Job> job = jobs.next()) {
+    names.add_job(*job);
     ++count;
-    const std::string lost = "an output of the run would overwrite this mesh";
-    const std::string mesh = canonical_name(job->mesh);
-    use(mesh, kInput, kOutput, job->mesh, lost);
-    if (const auto target = target_of(job->mesh); target && *target != mesh) {
-      use(*target, kInput, kOutput, job->mesh, lost);
-    }
-    const std::string out = canonical_name(job->out);
-    use(out, 0, kInput, job->out, "the output would overwrite a mesh of the run");
-    use(out, kOutput, kOutput, job->out, "two meshes of the run have this output");
   }
   return count;
 }

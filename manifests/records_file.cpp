@@ -4,7 +4,6 @@
 #include <cerrno>
 #include <charconv>
 #include <cstdint>
-#include <deque>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -107,13 +106,13 @@ std::function<std::optional<Record>()> lines_of_records(const fs::path& path) {
 }
 
 std::function<std::optional<Record>()> items_of_ledger(const fs::path& path) {
-  auto records = std::make_shared<std::deque<std::string>>();
-  Ledger(path).for_each_item([&](const LedgerItem& item) { records->push_back(item.record); });
-  return [records]() -> std::optional<Record> {
-    if (records->empty()) return std::nullopt;
-    Record record = parse_record(records->front());
-    records->pop_front();
-    return record;
+  auto ledger = std::make_shared<const Ledger>(path);
+  auto last = std::make_shared<std::string>();
+  return [ledger, last]() -> std::optional<Record> {
+    std::optional<LedgerItem> item = ledger->find_after(*last);
+    if (!item) return std::nullopt;
+    *last = std::move(item->target);
+    return parse_record(item->record);
   };
 }
 

@@ -137,6 +137,14 @@ Decision Resume::decide(const Job& job) const {
   return decision;
 }
 
+std::optional<std::string> Resume::issued_before(const std::string& input_hash) const {
+  const std::optional<LedgerMark> mark = ledger_.mark_of(input_hash);
+  if (!mark || mark->key != key_) return std::nullopt;
+  return "was issued as " + mark->out + " with " +
+         (mark->message_hex.empty() ? "a filled mark" : shown(from_hex(mark->message_hex))) +
+         " in scheme " + mark->scheme + "; --remark marks it again";
+}
+
 void Resume::enter(const Record& record) const {
   enter_record(ledger_, run_, record);
 }

@@ -46,6 +46,10 @@ class Resume {
   // for the same request. Throws Error Unwritable if the ledger cannot be read.
   [[nodiscard]] Decision decide(const Job& job) const;
 
+  // Returns why the mesh with this content must not be marked again: it is an output that the
+  // ledger issued under this key, whatever the scheme. Nothing: it may be marked.
+  [[nodiscard]] std::optional<std::string> issued_before(const std::string& input_hash) const;
+
   // Enters the result; a mark must be entered before its output gets its name, so that no file is
   // there that the ledger does not know. Throws Error Unwritable.
   void enter(const Record& record) const;

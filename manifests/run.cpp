@@ -47,7 +47,7 @@ class MarkWork {
       if (stop_ || !decide(item, marking)) mark(item, marking);
       return;
     } catch (const Error& error) {  // of the ledger or a companion: then there must be no output
-      marking.refuse(file_status(name_of(error.code())).value_or(FileStatus::Failed), error.what());
+      marking.refuse(file_status(error.code()), error.what());
     } catch (const Stopped&) {
       marking.interrupt();
     } catch (const std::exception& error) {
@@ -89,6 +89,7 @@ class MarkWork {
     unless_stopped();
     marking.load();
     unless_stopped();
+    refuse_what_was_issued(item.job.request, marking);
     marking.mark(key_);
     unless_stopped();
     marking.write();
@@ -111,6 +112,14 @@ class MarkWork {
     if (marking.result().is_marked() || context_.resume == nullptr) return;
     describe(item, marking);
     context_.resume->enter(item.record);
+  }
+
+  // A mark in the same scheme is found by reading; the ledger knows those of every scheme.
+  void refuse_what_was_issued(const MarkRequest& request, FileMarking& marking) const {
+    if (context_.resume == nullptr || request.options.remark) return;
+    if (const auto reason = context_.resume->issued_before(marking.result().input_hash)) {
+      marking.refuse(FileStatus::AlreadyMarked, *reason);
+    }
   }
 
   void describe(MarkItem& item, const FileMarking& marking) const {

@@ -14,6 +14,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/output_file.h"
+#include "engine/base/text.h"
 #include "render/colours.h"
 
 namespace triglyph {
@@ -21,12 +22,6 @@ namespace {
 
 constexpr const char* kFont = "DejaVuSans";
 constexpr int kSmallestText = 9;
-
-std::string extension_of(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
-}
 
 bool is_jpeg(const std::string& extension) {
   return extension == ".jpg" || extension == ".jpeg";
@@ -53,7 +48,7 @@ std::vector<std::uint8_t> bytes_of(const Image& picture, bool with_alpha) {
 
 // Returns the bytes of the picture file.
 std::vector<unsigned char> encode(const Image& picture, const std::filesystem::path& path) {
-  const std::string extension = extension_of(path);
+  const std::string extension = lower_case_ending(path);
   const bool is_exr = extension == ".exr";
   const bool with_alpha = !is_jpeg(extension);
   const auto output = OIIO::ImageOutput::create(extension.substr(1));
@@ -110,7 +105,7 @@ void draw_text(const std::string& text, int x, int y, const TextStyle& style, Im
 }
 
 void check_picture_name(const std::filesystem::path& path) {
-  const std::string extension = extension_of(path);
+  const std::string extension = lower_case_ending(path);
   if (extension == ".png" || extension == ".exr" || is_jpeg(extension)) return;
   throw Error(ErrorCode::Unsupported, path, "", "pictures end in .png, .jpg or .exr");
 }
@@ -132,7 +127,7 @@ Image read_picture(const std::filesystem::path& path) {
   if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, values.data())) {
     throw Error(ErrorCode::Unreadable, path, "", input->geterror());
   }
-  const bool is_exr = extension_of(path) == ".exr";
+  const bool is_exr = lower_case_ending(path) == ".exr";
   const auto light = [&](float value) { return is_exr ? value : decode_srgb(value); };
   for (std::size_t i = 0; i < picture.pixels().size(); ++i) {
     const float* v = values.data() + i * static_cast<std::size_t>(spec.nchannels);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <chrono>
 #include <new>
 
@@ -10,6 +9,7 @@
 #include "engine/base/output_file.h"
 #include "engine/base/parallel.h"
 #include "engine/base/stop.h"
+#include "engine/base/text.h"
 #include "engine/io/file_bytes.h"
 #include "engine/marking/extract.h"
 #include "engine/marking/mark.h"
@@ -32,22 +32,6 @@ constexpr std::array<std::string_view, 16> kStatusNames = {
     "failed",      "crashed",        "too slow",
     "interrupted"};
 
-FileStatus status_of(ErrorCode code) {
-  switch (code) {
-    case ErrorCode::Unreadable:
-      return FileStatus::Unreadable;
-    case ErrorCode::Malformed:
-      return FileStatus::Malformed;
-    case ErrorCode::Unsupported:
-      return FileStatus::Unsupported;
-    case ErrorCode::Unwritable:
-      return FileStatus::Unwritable;
-    case ErrorCode::Usage:
-      return FileStatus::Usage;
-  }
-  return FileStatus::Failed;
-}
-
 // Returns nothing for a mesh that was marked.
 std::optional<FileStatus> refused_status(MarkStatus status) {
   switch (status) {
@@ -65,17 +49,30 @@ std::optional<FileStatus> refused_status(MarkStatus status) {
   return FileStatus::Failed;
 }
 
-std::string lower_case_ending(const std::filesystem::path& path) {
-  std::string ending = path.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending;
-}
-
 }  // namespace
 
 std::string_view name_of(FileStatus status) {
   return kStatusNames.at(static_cast<std::size_t>(status));
+}
+
+std::span<const std::string_view> file_status_names() {
+  return kStatusNames;
+}
+
+FileStatus file_status(ErrorCode code) {
+  switch (code) {
+    case ErrorCode::Unreadable:
+      return FileStatus::Unreadable;
+    case ErrorCode::Malformed:
+      return FileStatus::Malformed;
+    case ErrorCode::Unsupported:
+      return FileStatus::Unsupported;
+    case ErrorCode::Unwritable:
+      return FileStatus::Unwritable;
+    case ErrorCode::Usage:
+      return FileStatus::Usage;
+  }
+  return FileStatus::Failed;
 }
 
 std::optional<FileStatus> file_status(std::string_view name) {
@@ -123,7 +120,7 @@ void FileMarking::run_stage(double& seconds, const Stage& stage) noexcept {
   try {
     stage();
   } catch (const Error& error) {
-    result_.status = status_of(error.code());
+    result_.status = file_status(error.code());
     result_.error = error.path().empty() ? result_.mesh.string() + ": " + error.what()
                                          : std::string(error.what());
   } catch (const Stopped& stopped) {

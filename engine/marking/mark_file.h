@@ -6,10 +6,12 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "engine/base/error.h"
 #include "engine/marking/marking.h"
 #include "engine/marking/options.h"
 #include "engine/message/key.h"
@@ -40,6 +42,12 @@ enum class FileStatus {
 // back. file_status() returns nothing for other text.
 [[nodiscard]] std::string_view name_of(FileStatus status);
 [[nodiscard]] std::optional<FileStatus> file_status(std::string_view name);
+
+// Returns the names in the order of FileStatus.
+[[nodiscard]] std::span<const std::string_view> file_status_names();
+
+// Returns the status of a file that an error ended.
+[[nodiscard]] FileStatus file_status(ErrorCode code);
 
 // Wall-clock times in seconds.
 struct StageTimes {

@@ -16,28 +16,10 @@ std::string count_of(std::size_t count, const std::string& noun) {
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
-// Is this text that can be shown in a line: UTF-8 without control characters?
-bool is_text(std::span<const std::uint8_t> bytes) {
-  for (std::size_t i = 0; i < bytes.size();) {
-    const std::uint8_t first = bytes[i++];
-    if (first < 0x20 || first == 0x7f) return false;
-    if (first < 0x80) continue;
-    const bool is_lead = first >= 0xc2 && first < 0xf5;
-    const bool is_control = first == 0xc2 && i < bytes.size() && bytes[i] < 0xa0;
-    if (!is_lead || is_control) return false;
-    const std::size_t end = i + (first < 0xe0 ? 1 : first < 0xf0 ? 2 : 3);
-    for (; i < end; ++i) {
-      if (i >= bytes.size() || (bytes[i] & 0xc0) != 0x80) return false;
-    }
-  }
-  return true;
-}
-
 std::string carries_mark(const FoundMessage& found) {
-  const std::string text(found.message.begin(), found.message.end());
-  return "carries " + (is_text(found.message) ? '"' + text + '"' : "0x" + to_hex(found.message)) +
-         " under this key already (" + count_of(found.agreeing, "unit") +
-         (found.agreeing == 1 ? " agrees" : " agree") + "); --remark marks it again";
+  return "carries " + shown(found.message) + " under this key already (" +
+         count_of(found.agreeing, "unit") + (found.agreeing == 1 ? " agrees" : " agree") +
+         "); --remark marks it again";
 }
 
 // Says what the mesh lacks for a message of one byte.

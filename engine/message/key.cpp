@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "engine/base/error.h"
+#include "engine/base/text.h"
 
 namespace triglyph {
 namespace {
@@ -170,6 +171,11 @@ std::vector<std::uint8_t> from_hex(const std::string& text) {
     throw Error(ErrorCode::Usage, {}, "", "not an even number of hexadecimal digits");
   }
   return bytes;
+}
+
+std::string shown(std::span<const std::uint8_t> message) {
+  const std::string text(message.begin(), message.end());
+  return is_printable(text) ? '"' + text + '"' : "0x" + to_hex(message);
 }
 
 std::string content_hash(std::span<const char> bytes) {

@@ -70,6 +70,9 @@ class Key {
 [[nodiscard]] std::string to_hex(std::span<const std::uint8_t> bytes);
 [[nodiscard]] std::vector<std::uint8_t> from_hex(const std::string& text);
 
+// Returns a message for the eye: printable text in quotes, anything else as "0x" and hexadecimal.
+[[nodiscard]] std::string shown(std::span<const std::uint8_t> message);
+
 // Returns the BLAKE2b-256 hash of a file's bytes in hexadecimal, as records show it. O(bytes).
 [[nodiscard]] std::string content_hash(std::span<const char> bytes);
 

@@ -1,7 +1,6 @@
 // The real executable, as a user runs it: exit codes, stdout as data, stderr as messages, files.
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -10,42 +9,16 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "engine/base/output_file.h"
-#include "engine/io/export_mesh.h"
-#include "engine/samples/sample_shapes.h"
-#include "tests/support/temp_folder.h"
+#include "tests/cli/cli_fixture.h"
 
 namespace triglyph {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct Result {
-  int code = 0;
-  std::string out;
-  std::string err;
-};
+using Result = test::CliResult;
 
-class Cli : public testing::Test {
- protected:
-  // Arguments are words for the shell; the folder of the test is the working directory.
-  Result run(const std::string& arguments) const {
-    const std::string command = "cd '" + folder_.path().string() +
-                                "' && '" TRIGLYPH_EXECUTABLE "' " + arguments +
-                                " >.out 2>.err </dev/null";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128, test::read_all(folder_ / ".out"),
-            test::read_all(folder_ / ".err")};
-  }
-
-  void make_sample(const std::string& name, std::size_t triangles) const {
-    OutputFile file(folder_ / name);
-    file.write(export_mesh(make_sample_shape(SampleShape::Closed, triangles, 1), {}));
-    file.commit();
-  }
-
-  test::TempFolder folder_;
-};
+class Cli : public test::CliTest {};
 
 TEST_F(Cli, VersionAndHelpSucceedAndUsageErrorsAreTwo) {
   EXPECT_EQ(run("--version").code, 0);
@@ -254,7 +227,7 @@ TEST_F(Cli, ConfigFileStandsInForArguments) {
 
 TEST_F(Cli, MeasuresDistances) {
   make_sample("a.obj", 3000);
-  run("mark --message x a.obj --out o");
+  ASSERT_EQ(run("mark --message x a.obj --out o").code, 0);
   const Result result = run("measure a.obj o/a.obj --json");
   ASSERT_EQ(result.code, 0);
   const auto json = nlohmann::json::parse(result.out);
@@ -268,7 +241,7 @@ TEST_F(Cli, MeasuresDistances) {
 TEST_F(Cli, MeasuresWhatIsAskedFor) {
   make_sample("a.obj", 3000);
   make_sample("b.obj", 2000);
-  run("mark --message x a.obj --out o");
+  ASSERT_EQ(run("mark --message x a.obj --out o").code, 0);
   const auto all = nlohmann::json::parse(run("measure a.obj o/a.obj --metric all --json").out);
   for (const char* name :
        {"hausdorff", "displacement_max", "metro_hausdorff", "mrms", "msdm", "msdm2",

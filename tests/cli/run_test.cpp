@@ -10,39 +10,20 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "engine/base/output_file.h"
-#include "engine/io/export_mesh.h"
-#include "engine/samples/sample_shapes.h"
-#include "tests/support/temp_folder.h"
+#include "tests/cli/cli_fixture.h"
 
 namespace triglyph {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct RunResult {
-  int code = 0;
-  std::string out;
-  std::string err;
-};
+using RunResult = test::CliResult;
 
-class CliRun : public testing::Test {
+class CliRun : public test::CliTest {
  protected:
-  // Arguments are words for the shell, which may redirect; `environment` is put before the command.
-  RunResult run(const std::string& arguments, const std::string& environment = "") const {
-    const std::string command = "cd '" + folder_.path().string() + "' && { " + environment +
-                                " '" TRIGLYPH_EXECUTABLE "' " + arguments +
-                                " ; } >.out 2>.err </dev/null";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128, test::read_all(folder_ / ".out"),
-            test::read_all(folder_ / ".err")};
-  }
-
   void make_samples(std::size_t count, std::size_t triangles = 2500) const {
     for (std::size_t i = 0; i < count; ++i) {
-      OutputFile file(folder_ / ("in/" + std::to_string(i) + ".obj"));
-      file.write(export_mesh(make_sample_shape(SampleShape::Closed, triangles, i), {}));
-      file.commit();
+      make_sample("in/" + std::to_string(i) + ".obj", triangles, i);
     }
   }
 
@@ -52,8 +33,6 @@ class CliRun : public testing::Test {
     for (std::string line; std::getline(stream, line);) all.push_back(nlohmann::json::parse(line));
     return all;
   }
-
-  test::TempFolder folder_;
 };
 
 TEST_F(CliRun, SameCommandAgainDoesOnlyWhatIsMissing) {
@@ -385,6 +364,20 @@ TEST_F(CliRun, ModesComeAlongAndOnRequestTimesAndCompanions) {
   EXPECT_EQ(refused.code, 3);
   EXPECT_EQ(lines(refused.out)[0]["status"], "usage");
   EXPECT_FALSE(fs::exists(folder_ / "q/0.obj"));
+}
+
+// What was issued is known by its content, in whatever scheme it was marked.
+TEST_F(CliRun, AnOutputIsNotMarkedAgainInAnotherScheme) {
+  make_samples(1);
+  ASSERT_EQ(run("mark in --message m --out o").code, 0);
+  const std::string again = "mark o --scheme aie --message n --out p --ledger o.ledger --json";
+  const RunResult refused = run(again);
+  EXPECT_EQ(refused.code, 3);
+  EXPECT_EQ(lines(refused.out)[0]["status"], "already marked");
+  EXPECT_NE(refused.err.find("\"m\" in scheme tsq; --remark"), std::string::npos) << refused.err;
+  ASSERT_EQ(run("keygen --out k").code, 0);
+  EXPECT_EQ(run(again + " --key-file k").code, 0);  // another owner knows nothing of it
+  EXPECT_EQ(run(again + " --remark --force").code, 0);
 }
 
 }  // namespace

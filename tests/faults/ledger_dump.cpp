@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,13 +24,15 @@ std::string record_without_run(const std::string& record) {
 }
 
 void print(const Ledger& ledger) {
-  ledger.for_each_item([](const LedgerItem& item) {
-    const std::string record = record_without_run(item.record);
-    std::printf("item %s %s %s %s %s %s %s %llu %s\n", item.target.c_str(), item.source.c_str(),
-                item.input_hash.c_str(), item.task.c_str(), item.key.c_str(), item.status.c_str(),
-                item.output_hash.c_str(), static_cast<unsigned long long>(item.place),
-                record.c_str());
-  });
+  std::string last;
+  while (const std::optional<LedgerItem> item = ledger.find_after(last)) {
+    std::printf("item %s %s %s %s %s %s %s %llu %s\n", item->target.c_str(), item->source.c_str(),
+                item->input_hash.c_str(), item->task.c_str(), item->key.c_str(),
+                item->status.c_str(), item->output_hash.c_str(),
+                static_cast<unsigned long long>(item->place),
+                record_without_run(item->record).c_str());
+    last = item->target;
+  }
   std::vector<std::string> marks;
   ledger.for_each_mark([&](const LedgerMark& mark) {
     marks.push_back("mark " + mark.out + " " + mark.mesh + " " + mark.message_hex + " " +

@@ -178,11 +178,11 @@ TEST(Ledger, TakesWritersOfManyThreadsAndProcesses) {
   EXPECT_EQ(count_marks(ledger), 120U);
   std::string last;
   std::size_t items = 0;
-  ledger.for_each_item([&](const LedgerItem& item) {
-    EXPECT_LT(last, item.target);  // by name
-    last = item.target;
+  while (const auto item = ledger.find_after(last)) {
+    EXPECT_LT(last, item->target);  // by name
+    last = item->target;
     ++items;
-  });
+  }
   EXPECT_EQ(items, 120U);
 }
 
