@@ -58,7 +58,7 @@ class Jobs {
     if (arguments.out.empty()) {
       throw Error(ErrorCode::Usage, {}, "", "--out is needed to mark meshes without a manifest");
     }
-    meshes_ = gather_named_files(arguments.inputs, std::cin);
+    meshes_ = gather_named_files(arguments.inputs, std::cin, arguments.out);
   }
 
   [[nodiscard]] std::unique_ptr<JobSource> open() const {
@@ -153,7 +153,7 @@ class MarkReport {
     if (records_) records_->finish();
     if (pictures_ && stopped) pictures_->stop();
     bool all_drawn = true;
-    if (pictures_ && !pictures_->finish()) {
+    if (pictures_ && pictures_->finish() != std::size_t{0}) {
       std::cerr << "triglyph: not all pictures were drawn\n";
       all_drawn = false;
     }

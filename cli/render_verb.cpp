@@ -2,6 +2,7 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -64,27 +65,16 @@ int draw_all(const std::vector<std::string>& names, std::vector<std::string> opt
   const PairSource next = pairs_of(names);
   options.insert(options.begin(), "--batch");
   RenderBatch batch(options);
-  using Time = std::optional<fs::file_time_type>;
-  const auto time_of = [](const fs::path& path) -> Time {
-    std::error_code error;
-    const auto time = fs::last_write_time(path, error);
-    return error ? Time() : Time(time);
-  };
-  std::vector<std::pair<fs::path, Time>> pictures;  // with the times of former ones
+  std::size_t pairs = 0;
   while (const std::optional<MeshPair> pair = next()) {
-    const fs::path picture = fs::path(*out) / (pair->name.string() + ".png");
-    pictures.emplace_back(picture, time_of(picture));
-    batch.draw(pair->original, pair->marked, picture);
+    batch.draw(pair->original, pair->marked, fs::path(*out) / (pair->name.string() + ".png"));
+    ++pairs;
   }
-  const bool all_well = batch.finish();
-  const auto drawn = static_cast<std::size_t>(
-      std::count_if(pictures.begin(), pictures.end(), [&](const auto& picture) {
-        const Time now = time_of(picture.first);
-        return now && now != picture.second;
-      }));
-  std::cerr << "triglyph: " << pictures.size() << " pairs: " << drawn << " drawn, "
-            << pictures.size() - drawn << " failed\n";
-  const bool is_done = all_well && drawn == pictures.size();
+  const std::optional<std::size_t> failed = batch.finish();
+  if (!failed) throw std::runtime_error("triglyph-render ended before it had drawn all pictures");
+  const bool is_done = *failed == 0;
+  std::cerr << "triglyph: " << pairs << (pairs == 1 ? " pair: " : " pairs: ") << pairs - *failed
+            << " drawn, " << *failed << " failed\n";
   if (ledger) ledger->end_run(run, is_done ? "done" : "some failed");
   return is_done ? kDone : kSomeFailed;
 }

@@ -1,6 +1,7 @@
 #include "cli/sibling.h"
 
 #include <cerrno>
+#include <charconv>
 #include <csignal>
 #include <cstdlib>
 #include <sstream>
@@ -61,24 +62,32 @@ void exec_renderer(const std::vector<std::string>& arguments) {
 RenderBatch::RenderBatch(const std::vector<std::string>& arguments) {
   const fs::path program = find_renderer();
   std::vector<char*> all = argument_vector(program, arguments);
-  int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) fail_to_start(program);
-  process_ = fork();
-  if (process_ < 0) {
-    close(ends[0]);
-    close(ends[1]);
+  int jobs[2];
+  int answer[2];
+  if (pipe2(jobs, O_CLOEXEC) != 0) fail_to_start(program);
+  if (pipe2(answer, O_CLOEXEC) != 0) {
+    close(jobs[0]);
+    close(jobs[1]);
     fail_to_start(program);
   }
+  process_ = fork();
   if (process_ == 0) {
     // the run handles interrupts, and then stops its renderer
     std::signal(SIGINT, SIG_IGN);
-    dup2(ends[0], STDIN_FILENO);
-    dup2(STDERR_FILENO, STDOUT_FILENO);  // standard output belongs to the run
+    dup2(jobs[0], STDIN_FILENO);
+    dup2(answer[1], STDOUT_FILENO);
     execv(program.c_str(), all.data());
     _exit(127);
   }
-  close(ends[0]);
-  pipe_ = ends[1];
+  close(jobs[0]);
+  close(answer[1]);
+  pipe_ = jobs[1];
+  answer_ = answer[0];
+  if (process_ < 0) {
+    close(pipe_);
+    close(answer_);
+    fail_to_start(program);
+  }
   std::signal(SIGPIPE, SIG_IGN);  // finish() reports a renderer that died
 }
 
@@ -105,14 +114,25 @@ void RenderBatch::stop() const {
   if (process_ >= 0) kill(process_, SIGTERM);
 }
 
-bool RenderBatch::finish() {
-  if (process_ < 0) return true;
+std::optional<std::size_t> RenderBatch::finish() {
+  if (process_ < 0) return 0;
   close(pipe_);
+  std::string answer;
+  for (char letter = 0;;) {
+    const ssize_t count = read(answer_, &letter, 1);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) break;
+    answer += letter;
+  }
+  close(answer_);
   int status = 0;
   while (waitpid(process_, &status, 0) < 0 && errno == EINTR) {
   }
   process_ = -1;
-  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  std::size_t failed = 0;
+  const char* end = answer.data() + answer.size();
+  const bool is_answer = std::from_chars(answer.data(), end, failed).ec == std::errc();
+  return WIFEXITED(status) && is_answer ? std::optional(failed) : std::nullopt;
 }
 
 }  // namespace triglyph

@@ -2,7 +2,9 @@
 // libraries take 0.2 s to load.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,18 +28,20 @@ class RenderBatch {
   RenderBatch& operator=(const RenderBatch&) = delete;
 
   // Queues a picture of the two meshes. Blocks if the renderer is far behind. If the renderer died,
-  // the picture is lost and finish() returns false.
+  // the picture is lost and finish() returns nothing.
   void draw(const std::filesystem::path& original, const std::filesystem::path& marked,
             const std::filesystem::path& out);
 
   // Lets the renderer finish the current picture only.
   void stop() const;
 
-  // Waits for the last picture. Returns whether all were drawn.
-  [[nodiscard]] bool finish();
+  // Waits for the last picture. Returns the number of pictures that could not be drawn; nothing if
+  // the renderer ended before the last one.
+  [[nodiscard]] std::optional<std::size_t> finish();
 
  private:
-  int pipe_ = -1;
+  int pipe_ = -1;    // of jobs
+  int answer_ = -1;  // of the renderer's last line
   int process_ = -1;
 };
 

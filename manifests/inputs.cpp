@@ -10,6 +10,7 @@
 #include "engine/base/text.h"
 #include "manifests/folder_walk.h"
 #include "manifests/manifest.h"
+#include "manifests/resume.h"
 
 namespace triglyph {
 namespace {
@@ -54,17 +55,22 @@ std::vector<NamedFile> with_root(std::vector<fs::path> paths, const fs::path& ro
   return files;
 }
 
-std::vector<NamedFile> files_named(const std::string& name) {
+std::vector<NamedFile> files_named(const std::string& name, const fs::path& outputs) {
   check_name(name);
   const fs::path path(name);
   std::error_code ignored;
-  if (fs::is_directory(path, ignored)) return with_root(meshes_in_folder(path), path);
+  if (fs::is_directory(path, ignored)) {
+    std::vector<fs::path> found = meshes_in_folder(path);
+    leave_out_outputs(found, path, outputs);
+    return with_root(std::move(found), path);
+  }
   if (path.extension() == ".jsonl") return with_root(meshes_of_manifest(path), path.parent_path());
   if (fs::exists(path, ignored) || name.find_first_of("*?[") == name.npos) {
     return {{path, path.parent_path()}};
   }
   std::vector<fs::path> found = expand_glob(path);
   if (found.empty()) throw Error(ErrorCode::Usage, path, "", "matches no file");
+  leave_out_outputs(found, glob_root(path), outputs);
   return with_root(std::move(found), glob_root(path));
 }
 
@@ -83,11 +89,25 @@ void check_name(const std::string& name) {
   }
 }
 
-std::vector<NamedFile> gather_named_files(std::span<const std::string> names, std::istream& list) {
+void leave_out_outputs(std::vector<fs::path>& files, const fs::path& root,
+                       const fs::path& outputs) {
+  if (outputs.empty()) return;
+  const auto lies_below = [](const fs::path& path, const fs::path& folder) {
+    const fs::path relative = path.lexically_relative(folder);
+    return !relative.empty() && relative != "." && *relative.begin() != "..";
+  };
+  const fs::path folder = canonical_name(outputs / "");
+  if (!lies_below(folder, canonical_name(root / ""))) return;
+  std::erase_if(files,
+                [&](const fs::path& file) { return lies_below(canonical_name(file), folder); });
+}
+
+std::vector<NamedFile> gather_named_files(std::span<const std::string> names, std::istream& list,
+                                          const fs::path& outputs) {
   std::vector<NamedFile> files;
   std::unordered_set<std::string> known;
   const auto add = [&](const std::string& name) {
-    for (NamedFile& file : files_named(name)) {
+    for (NamedFile& file : files_named(name, outputs)) {
       if (known.insert(file.path.string()).second) files.push_back(std::move(file));
     }
   };

@@ -238,6 +238,7 @@ void ManifestReader::add_jobs(const Line& line) {
   std::vector<fs::path> meshes = expand_glob(pattern);
   if (meshes.empty()) fail("\"mesh\" matches no file: " + pattern.string());
   const bool is_glob = has_wildcard(pattern.string());
+  if (is_glob) leave_out_outputs(meshes, glob_root(pattern), out_directory_);
   if (is_glob && !named_.empty()) {
     std::erase_if(meshes, [&](const fs::path& mesh) {
       return named_.contains(std::hash<std::string>{}(canonical_name(mesh)));

@@ -85,12 +85,12 @@ fs::path path_in(const nlohmann::json& job, const std::string& key) {
 }
 
 // Reads one JSON object per line from standard input: {"original", "marked", "out"}, each also as
-// "<key>_bytes".
+// "<key>_bytes". Prints the number of jobs that failed in the end, unless it is stopped.
 int draw_batch(const RenderArguments& arguments) {
   std::signal(SIGTERM, [](int) {
     stop_requested = 1;
   });  // takes effect between pictures, so that none is incomplete
-  int code = 0;
+  std::size_t failed = 0;
   std::size_t number = 0;
   for (std::string line; stop_requested == 0 && std::getline(std::cin, line);) {
     ++number;
@@ -99,10 +99,12 @@ int draw_batch(const RenderArguments& arguments) {
       draw_pair(arguments, path_in(job, "original"), path_in(job, "marked"), path_in(job, "out"));
     } catch (const std::exception& error) {
       std::cerr << "triglyph-render: line " << number << ": " << error.what() << "\n";
-      code = kSomeFailed;
+      ++failed;
     }
   }
-  return stop_requested == 0 ? code : kSomeFailed;
+  if (stop_requested != 0) return kSomeFailed;
+  std::cout << failed << std::endl;
+  return failed == 0 ? 0 : kSomeFailed;
 }
 
 int run(RenderArguments arguments) {

@@ -123,8 +123,11 @@ TEST_F(CliRender, DrawsEveryPairOfFoldersAndRecords) {
   EXPECT_EQ(triglyph("ledger runs o.ledger"), 0);
   EXPECT_NE(test::read_all(folder_ / ".out").find("\"verb\":\"render\""), std::string::npos);
   EXPECT_TRUE(fs::exists(folder_ / "q/o/sub/b.obj.png"));
+  EXPECT_EQ(triglyph("render in o --out t --width 64 --samples 1 --turntable 2"), 0) << message();
+  EXPECT_TRUE(fs::exists(folder_ / "t/a.obj-001.png"));
   fs::remove(folder_ / "o/a.obj");
   EXPECT_EQ(triglyph("render in o --out p --width 64 --samples 1"), 3);
+  EXPECT_NE(message().find("2 pairs: 1 drawn, 1 failed"), std::string::npos) << message();
   EXPECT_EQ(triglyph("render in o --width 64"), 2);  // no --out
 }
 

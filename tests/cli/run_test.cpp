@@ -380,5 +380,24 @@ TEST_F(CliRun, AnOutputIsNotMarkedAgainInAnotherScheme) {
   EXPECT_EQ(run(again + " --remark --force").code, 0);
 }
 
+// A folder of outputs below the folder that is marked holds what the run before wrote.
+TEST_F(CliRun, OutputsBelowTheInputsAreNoInputs) {
+  make_samples(2);
+  folder_.write("m.jsonl", "{\"mesh\": \"in/**/*.obj\", \"message\": \"m\"}\n");
+  for (const char* command :
+       {"mark in --message m --out in/marked", "mark 'in/**/*.obj' --message m --out ./in/marked",
+        "mark m.jsonl --out in/marked"}) {
+    for (int i = 0; i < 2; ++i) {
+      const RunResult result = run(command);
+      EXPECT_EQ(result.code, 0) << command << result.err;
+      EXPECT_NE(result.err.find("2 meshes: 2 marked"), std::string::npos) << result.err;
+    }
+    fs::remove_all(folder_ / "in/marked");
+    fs::remove(folder_ / "in/marked.ledger");
+  }
+  EXPECT_EQ(run("mark in --message m --out in").code, 2);
+  EXPECT_EQ(run("mark in/0.obj --message m --out in").code, 2);
+}
+
 }  // namespace
 }  // namespace triglyph
