@@ -1,10 +1,13 @@
 #include "manifests/run.h"
 
+#include <new>
+
 #include <sys/resource.h>
 
 #include "engine/base/error.h"
 #include "engine/base/output_file.h"
 #include "engine/base/stop.h"
+#include "engine/marking/refusal.h"
 #include "manifests/companions.h"
 #include "manifests/share.h"
 
@@ -50,6 +53,8 @@ class MarkWork {
       marking.refuse(file_status(error.code()), error.what());
     } catch (const Stopped&) {
       marking.interrupt();
+    } catch (const std::bad_alloc&) {
+      marking.refuse(FileStatus::Failed, too_little_memory(item.memory_estimate));
     } catch (const std::exception& error) {
       marking.refuse(FileStatus::Failed, error.what());
     }

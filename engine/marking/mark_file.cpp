@@ -49,6 +49,12 @@ std::optional<FileStatus> refused_status(MarkStatus status) {
   return FileStatus::Failed;
 }
 
+// What a surface gives back of the mark.
+struct ReadBack {
+  std::vector<Carrier> embedded;  // whose word can be read
+  bool is_the_mark = false;
+};
+
 }  // namespace
 
 std::string_view name_of(FileStatus status) {
@@ -92,7 +98,33 @@ struct FileMarking::Work {
   std::optional<Halfedges> halfedges;
   Marking marking;
   std::optional<OutputFile> output;
+
+  [[nodiscard]] ReadBack read_from(const Surface& surface, const MarkedFile& wanted,
+                                   const Key& key) const;
+  [[nodiscard]] bool triangles_would_do(const MarkedFile& wanted, const Key& key) const;
 };
+
+// Reads the mark that was made from a surface that should carry it.
+ReadBack FileMarking::Work::read_from(const Surface& surface, const MarkedFile& wanted,
+                                      const Key& key) const {
+  const Extraction found = extract(surface, wanted.encoding(), key);
+  ReadBack read;
+  read.embedded = carriers_read(marking.carriers, marking.words, found.readings);
+  read.is_the_mark =
+      wanted.request.is_fill()
+          ? !read.embedded.empty() && read.embedded.size() >= marking.carriers.size() * 99 / 100
+          : found.message == wanted.request.message();
+  return read;
+}
+
+// Returns whether the mesh has polygons, and the mark can be read where they stay cut into the
+// triangles that were marked.
+bool FileMarking::Work::triangles_would_do(const MarkedFile& wanted, const Key& key) const {
+  const Mesh& mesh = file->mesh();
+  if (mesh.triangles.size() <= file->face_count()) return false;
+  const Mesh marked{marking.positions, mesh.triangles};
+  return read_from({marked, *halfedges}, wanted, key).is_the_mark;
+}
 
 FileMarking::FileMarking(std::filesystem::path mesh, std::filesystem::path out, MarkRequest request)
     : work_(std::make_unique<Work>()) {
@@ -126,7 +158,10 @@ void FileMarking::run_stage(double& seconds, const Stage& stage) noexcept {
   } catch (const Stopped& stopped) {
     end(FileStatus::Interrupted, stopped.what());
   } catch (const std::bad_alloc&) {
-    end(FileStatus::Failed, "not enough memory");
+    std::error_code ignored;
+    const auto bytes = std::filesystem::file_size(result_.mesh, ignored);
+    end(FileStatus::Failed, too_little_memory(estimate_memory(ignored ? 0 : bytes, result_.mesh,
+                                                              result_.request.is_fill())));
   } catch (const std::exception& error) {
     end(FileStatus::Failed, error.what());
   }
@@ -195,24 +230,15 @@ void FileMarking::write() noexcept {
 
 void FileMarking::read_back(const Key& key) noexcept {
   run_stage(result_.times.read_back, [&] {
-    const Encoding encoding = result_.encoding();
     const Readable written(work_->output->temporary_path());
-    const Extraction found = extract(written.surface(), encoding, key);
-    std::vector<Carrier> embedded =
-        carriers_read(work_->marking.carriers, work_->marking.words, found.readings);
-    result_.units_embedded = static_cast<std::uint32_t>(embedded.size());
-    const std::size_t carriers = work_->marking.carriers.size();
-    const bool verified = result_.request.is_fill()
-                              ? !embedded.empty() && embedded.size() >= carriers * 99 / 100
-                              : found.message == result_.request.message();
-    if (!verified) {
-      end(FileStatus::NotVerified, "the mark could not be read back (" +
-                                       std::to_string(result_.units_embedded) + " of " +
-                                       std::to_string(result_.units_assigned) +
-                                       " units): try another --scheme or a larger --step");
+    ReadBack read = work_->read_from(written.surface(), result_, key);
+    result_.units_embedded = static_cast<std::uint32_t>(read.embedded.size());
+    if (!read.is_the_mark) {
+      end(FileStatus::NotVerified, not_read_back(result_.units_embedded, result_.units_assigned,
+                                                 work_->triangles_would_do(result_, key)));
       return;
     }
-    if (result_.request.options.detail) result_.units = std::move(embedded);
+    if (result_.request.options.detail) result_.units = std::move(read.embedded);
   });
 }
 

@@ -75,6 +75,12 @@ std::string too_coarse(const WayOut& way_out, double number_step) {
          wider;
 }
 
+// Returns a number of bytes for the eye, in decimal units.
+std::string size_of(std::uint64_t bytes) {
+  const auto size = static_cast<double>(bytes);
+  return size < 999.5e6 ? short_text(size / 1e6) + " MB" : short_text(size / 1e9) + " GB";
+}
+
 }  // namespace
 
 std::string refusal(const Marking& marking, const MarkRequest& request, double number_step) {
@@ -92,6 +98,20 @@ std::string refusal(const Marking& marking, const MarkRequest& request, double n
       break;
   }
   return "";
+}
+
+std::string not_read_back(std::uint32_t found, std::uint32_t units, bool triangles_would_do) {
+  return "the mark could not be read back (" + std::to_string(found) + " of " +
+         count_of(units, "unit") + "): " +
+         (triangles_would_do ? "its polygons are cut into other triangles once points have moved; "
+                               "export the mesh as triangles, from which the mark can be read"
+                             : "try another --scheme");
+}
+
+// No mesh is estimated at less than a mebibyte, so that this budget has room for one at a time.
+std::string too_little_memory(std::uint64_t estimate) {
+  return "not enough memory: this mesh takes about " + size_of(estimate) +
+         "; with --memory 1M no other is in process at the same time";
 }
 
 }  // namespace triglyph

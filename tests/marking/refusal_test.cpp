@@ -74,6 +74,23 @@ TEST(Refusal, ShowsTheMarkThatIsThereInALine) {
   EXPECT_NE(shown("\xc3").find("0xc3"), std::string::npos);
 }
 
+TEST(Refusal, SaysWhatTheMemoryIsFor) {
+  EXPECT_EQ(too_little_memory(812345678),
+            "not enough memory: this mesh takes about 812 MB; with --memory 1M no other is in "
+            "process at the same time");
+  EXPECT_NE(too_little_memory(999700000).find("about 1 GB;"), std::string::npos);
+  EXPECT_NE(too_little_memory(12345678901).find("about 12.3 GB;"), std::string::npos);
+}
+
+TEST(Refusal, SaysWhetherTrianglesWouldDo) {
+  EXPECT_EQ(not_read_back(5, 11, true),
+            "the mark could not be read back (5 of 11 units): its polygons are cut into other "
+            "triangles once points have moved; export the mesh as triangles, from which the mark "
+            "can be read");
+  EXPECT_EQ(not_read_back(0, 1, false),
+            "the mark could not be read back (0 of 1 unit): try another --scheme");
+}
+
 TEST(Refusal, SaysHowCoarseNumbersBecomeFine) {
   EXPECT_EQ(reason(failed(MarkStatus::TooCoarse, {})),
             "numbers 0.25 apart are too coarse for the mark: export the mesh with more digits or "
