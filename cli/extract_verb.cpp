@@ -46,11 +46,20 @@ void print_text(const std::filesystem::path& path, const FileReading& reading,
   std::cout << "\n";
 }
 
-void print_json(const std::filesystem::path& path, const FileReading& reading,
-                std::span<const Key> keys) {
+std::string_view status_of(const ReadResult& result) {
+  if (!result.reading) return name_of(result.failure->status);
+  return result.reading->mark ? "marked" : "no mark";
+}
+
+nlohmann::ordered_json json_of(const ReadResult& result, std::span<const Key> keys) {
   nlohmann::ordered_json json;
-  put_path(json, "mesh", path);
-  json["status"] = reading.mark ? "marked" : "no mark";
+  put_path(json, "mesh", result.path);
+  json["status"] = status_of(result);
+  if (!result.reading) {
+    json["error"] = result.failure->error;
+    return json;
+  }
+  const FileReading& reading = *result.reading;
   json["vertices"] = reading.vertices;
   json["faces"] = reading.faces;
   json["units_with_marker"] = reading.units_with_marker;
@@ -64,7 +73,7 @@ void print_json(const std::filesystem::path& path, const FileReading& reading,
     json["units_agreeing"] = mark.agreeing;
     json["agreement"] = mark.agreement;
   }
-  std::cout << to_line(json);
+  return json;
 }
 
 // The kinds of results in the tally.
@@ -78,26 +87,21 @@ std::vector<std::string_view> kinds_of_results() {
 }
 
 void print_result(const ReadResult& result, std::span<const Key> keys, bool json) {
-  if (result.reading) {
-    json ? print_json(result.path, *result.reading, keys)
-         : print_text(result.path, *result.reading, keys);
-    return;
+  if (!result.reading) std::cerr << "triglyph: " << printable(result.failure->error) << "\n";
+  if (json) {
+    std::cout << to_line(json_of(result, keys));
+  } else if (result.reading) {
+    print_text(result.path, *result.reading, keys);
   }
-  std::cerr << "triglyph: " << printable(result.failure->error) << "\n";
-  if (!json) return;
-  nlohmann::ordered_json line;
-  put_path(line, "mesh", result.path);
-  line["status"] = name_of(result.failure->status);
-  line["error"] = result.failure->error;
-  std::cout << to_line(line);
 }
 
-// Prints a result as it arrives, and counts it.
+// Prints a result as it arrives, notes it and counts it.
 void report_result(const ReadResult& result, std::span<const Key> keys, bool json,
-                   RunTally& tally) {
+                   const LoggedRun& run, RunTally& tally) {
   tally.clear_bar();
   print_result(result, keys, json);
   check_standard_output();  // nobody is there to read the rest
+  run.note(result.path, status_of(result), json_of(result, keys));
   const std::size_t kind = !result.reading
                                ? kFailedFirst + static_cast<std::size_t>(result.failure->status)
                            : result.reading->mark ? kCarries
@@ -142,7 +146,7 @@ int run_extract(const ExtractArguments& arguments) {
     RunTally tally(arguments.run, order, files.size(), kinds_of_results());
     read_files(
         files, encodings, keys, arguments.run.context(order),
-        [&](const ReadResult& result) { report_result(result, keys, arguments.json, tally); },
+        [&](const ReadResult& result) { report_result(result, keys, arguments.json, run, tally); },
         order.board->stop());
     if (order.only) return kDone;
     int code = tally.finish("file", "files");

@@ -62,6 +62,17 @@ void list_runs(const Ledger& ledger) {
   });
 }
 
+void list_results(const Ledger& ledger) {
+  ledger.for_each_result([](const LedgerResult& result) {
+    nlohmann::ordered_json json = {{"run", result.run}, {"place", result.place}};
+    put_path(json, "file", result.file);
+    json["status"] = result.status;
+    json["result"] = parse_json_line(result.line);
+    std::cout << to_line(json);
+    check_standard_output();
+  });
+}
+
 void import_records(Ledger& ledger, const std::vector<fs::path>& files) {
   LedgerRun run;
   run.verb = "import";
@@ -97,6 +108,7 @@ int run_ledger(const LedgerArguments& arguments) {
   if (arguments.action == "export") export_items(ledger);
   if (arguments.action == "marks") list_marks(ledger);
   if (arguments.action == "runs") list_runs(ledger);
+  if (arguments.action == "results") list_results(ledger);
   if (imports) import_records(ledger, arguments.records);
   return kDone;
 }
@@ -107,12 +119,14 @@ void add_ledger_verb(CLI::App& app, Action& action) {
   CLI::App* verb = app.add_subcommand(
       "ledger", "Print what a ledger remembers, one JSON object per line, or add records to it");
   auto arguments = std::make_shared<LedgerArguments>();
-  verb->add_option("action", arguments->action,
-                   "export: the records of all outputs by name; marks: every mark issued; runs: "
-                   "every run; import: add files of records")
+  verb->add_option(
+          "action", arguments->action,
+          "export: the records of all outputs by name; marks: every mark issued; runs: "
+          "every run; results: what extract, verify, measure and render found; import: add "
+          "files of records")
       ->required()
-      ->check(CLI::IsMember({"export", "marks", "runs", "import"}).description(""))
-      ->type_name("export|marks|runs|import");
+      ->check(CLI::IsMember({"export", "marks", "runs", "results", "import"}).description(""))
+      ->type_name("export|marks|runs|results|import");
   verb->add_option("ledger", arguments->ledger, "The ledger")->required()->type_name("LEDGER");
   verb->add_option("records", arguments->records, "Files of records to import")
       ->type_name("RECORDS");

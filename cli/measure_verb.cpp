@@ -62,19 +62,21 @@ nlohmann::ordered_json measured(const MeasureArguments& arguments, const MeshPai
   return json;
 }
 
+nlohmann::ordered_json json_of(const PairResult& result) {
+  if (!result.failure) return result.values;
+  nlohmann::ordered_json json;
+  put_path(json, "original", result.pair.original);
+  put_path(json, "marked", result.pair.marked);
+  json["status"] = name_of(result.failure->status);
+  json["error"] = result.failure->error;
+  return json;
+}
+
 void print_measured(const PairResult& result, bool json, bool is_first) {
-  if (result.failure) {
-    std::cerr << "triglyph: " << printable(result.failure->error) << "\n";
-    if (!json) return;
-    nlohmann::ordered_json line;
-    put_path(line, "original", result.pair.original);
-    put_path(line, "marked", result.pair.marked);
-    line["status"] = name_of(result.failure->status);
-    line["error"] = result.failure->error;
-    std::cout << to_line(line);
-  } else if (json) {
-    std::cout << to_line(result.values);
-  } else {
+  if (result.failure) std::cerr << "triglyph: " << printable(result.failure->error) << "\n";
+  if (json) {
+    std::cout << to_line(json_of(result));
+  } else if (!result.failure) {
     if (!is_first) std::cout << "\n";
     for (const auto& [name, value] : result.values.items()) {
       std::cout << name << " "
@@ -93,13 +95,16 @@ int run_measure(const MeasureArguments& arguments) {
     if (!arguments.run.ledger().empty()) ledger.emplace(arguments.run.ledger());
     const LoggedRun run(ledger ? &*ledger : nullptr, order, "measure");
     RunTally tally(arguments.run, order, 0, {"measured", "failed"});
-    measure_pairs(
-        pairs_of(arguments.inputs), [&](const MeshPair& pair) { return measured(arguments, pair); },
+    run_pairs(
+        pairs_of(arguments.inputs),
+        [&](PairResult& result) { result.values = measured(arguments, result.pair); },
         arguments.run.context(order),
         [&](const PairResult& result) {
           tally.clear_bar();
           print_measured(result, arguments.json, tally.counted(0) == 0);
           const bool failed = result.failure.has_value();
+          run.note(result.pair.original, failed ? name_of(result.failure->status) : "measured",
+                   json_of(result));
           tally.count(failed ? 1 : 0, failed, false, result.pair.original);
         },
         order.board->stop());

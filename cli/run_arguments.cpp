@@ -13,6 +13,8 @@
 #include "cli/screen.h"
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
+#include "manifests/json_line.h"
+#include "manifests/resume.h"
 
 namespace triglyph {
 namespace {
@@ -178,7 +180,7 @@ int RunTally::code() const {
 }
 
 LoggedRun::LoggedRun(Ledger* ledger, const WorkOrder& order, std::string_view verb)
-    : ledger_(ledger) {
+    : ledger_(ledger), board_(*order.board) {
   if (ledger_ == nullptr) return;
   std::atomic<std::uint64_t>& known = order.board->counters[kRunId];
   if (known == 0) {
@@ -191,6 +193,18 @@ LoggedRun::LoggedRun(Ledger* ledger, const WorkOrder& order, std::string_view ve
     known = static_cast<std::uint64_t>(ledger_->begin_run(run));
   }
   id_ = static_cast<std::int64_t>(known.load());
+}
+
+void LoggedRun::note(const std::filesystem::path& file, std::string_view status,
+                     const nlohmann::ordered_json& result) const {
+  if (ledger_ == nullptr) return;
+  std::string line = to_line(result);
+  line.pop_back();  // the newline
+  ledger_->note({.run = id_,
+                 .place = board_.delivered,  // as many as came before
+                 .file = canonical_name(file),
+                 .status = std::string(status),
+                 .line = std::move(line)});
 }
 
 void LoggedRun::end(int exit_code) const {

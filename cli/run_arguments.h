@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
 #include "cli/options.h"
 #include "cli/screen.h"
@@ -92,13 +93,20 @@ class RunTally {
 // A run in a ledger, from its begin to its end; does nothing where there is no ledger.
 class LoggedRun {
  public:
-  // Goes on with the run of an earlier worker if the order is not the first.
+  // Goes on with the run of an earlier worker if the order is not the first. The order and its
+  // board must outlive the object.
   LoggedRun(Ledger* ledger, const WorkOrder& order, std::string_view verb);
   [[nodiscard]] std::int64_t id() const { return id_; }
+
+  // Notes what was found in the file whose result is being delivered; `result` is what --json
+  // prints of it.
+  void note(const std::filesystem::path& file, std::string_view status,
+            const nlohmann::ordered_json& result) const;
   void end(int exit_code) const;
 
  private:
   Ledger* ledger_;
+  const RunBoard& board_;
   std::int64_t id_ = 0;
 };
 

@@ -95,20 +95,24 @@ void print_damage(const Verification& found) {
   std::cout << "\n";
 }
 
+nlohmann::ordered_json json_of(const Record& record, const Verification& found) {
+  nlohmann::ordered_json json;
+  put_path(json, "out", record.file.out);
+  json["verdict"] = name_of(found.verdict);
+  json["units_recorded"] = record.file.units_embedded;
+  json["units_found"] = found.units_found;
+  if (!found.detail.empty()) json["detail"] = found.detail;
+  if (found.damage) {
+    json["damage"] = {{"units_expected", found.damage->units_expected},
+                      {"units_damaged", found.damage->units_damaged},
+                      {"vertices", found.damage->vertices}};
+  }
+  return json;
+}
+
 void print(const VerifyArguments& arguments, const Record& record, const Verification& found) {
   if (arguments.json) {
-    nlohmann::ordered_json json;
-    put_path(json, "out", record.file.out);
-    json["verdict"] = name_of(found.verdict);
-    json["units_recorded"] = record.file.units_embedded;
-    json["units_found"] = found.units_found;
-    if (!found.detail.empty()) json["detail"] = found.detail;
-    if (found.damage) {
-      json["damage"] = {{"units_expected", found.damage->units_expected},
-                        {"units_damaged", found.damage->units_damaged},
-                        {"vertices", found.damage->vertices}};
-    }
-    std::cout << to_line(json);
+    std::cout << to_line(json_of(record, found));
     return;
   }
   std::cout << printable(record.file.out.string()) << ": " << name_of(found.verdict) << ", "
@@ -157,6 +161,7 @@ int run_verify(const VerifyArguments& arguments) {
           tally.clear_bar();
           print(arguments, record, found);
           check_standard_output();  // nobody is there to read the rest
+          run.note(record.file.out, name_of(found.verdict), json_of(record, found));
           // who asks for a file by its name expects a mark in it
           const bool good = found.verdict == FileVerdict::Intact ||
                             (files.empty() && found.verdict == FileVerdict::NotMarked);

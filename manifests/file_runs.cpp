@@ -4,6 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/stop.h"
+#include "engine/marking/refusal.h"
 #include "manifests/share.h"
 
 namespace triglyph {
@@ -31,7 +32,7 @@ void attempt(FileItem& item, const Work& work) {
   } catch (const Stopped&) {  // then there is no result
     return;
   } catch (const std::bad_alloc&) {
-    fail(FileStatus::Failed, item.file.string() + ": not enough memory");
+    fail(FileStatus::Failed, item.file.string() + ": " + too_little_memory(item.memory_estimate));
   } catch (const std::exception& error) {
     fail(FileStatus::Failed, item.file.string() + ": " + error.what());
   }
@@ -133,11 +134,9 @@ void verify_files(const RecordSource& records, const Key& key, bool locate,
       context, stop);
 }
 
-void measure_pairs(const PairSource& pairs,
-                   const std::function<nlohmann::ordered_json(const MeshPair&)>& measure,
-                   const RunContext& context,
-                   const std::function<void(const PairResult&)>& on_result,
-                   const std::atomic<bool>& stop) {
+void run_pairs(const PairSource& pairs, const std::function<void(PairResult&)>& work,
+               const RunContext& context, const std::function<void(const PairResult&)>& on_result,
+               const std::atomic<bool>& stop) {
   const auto source = [&]() -> std::unique_ptr<PairItem> {
     std::optional<MeshPair> pair = pairs();
     if (!pair) return nullptr;
@@ -147,9 +146,9 @@ void measure_pairs(const PairSource& pairs,
     return item;
   };
   run_files<PairItem>(
-      source, [&](PairItem& item) { item.result.values = measure(item.result.pair); },
+      source, [&](PairItem& item) { work(item.result); },
       [&](PairItem& item) {
-        item.result.failure = std::move(item.failure);
+        if (item.failure) item.result.failure = std::move(item.failure);
         on_result(item.result);
       },
       context, stop);

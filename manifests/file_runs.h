@@ -49,19 +49,17 @@ void verify_files(const RecordSource& records, const Key& key, bool locate,
                   const std::function<void(const Record&, const Verification&)>& on_verdict,
                   const std::atomic<bool>& stop);
 
-// The result of measuring a pair of meshes: values or a failure.
+// The result of the work on a pair of meshes: values, of which there may be none, or a failure.
 struct PairResult {
   MeshPair pair;
   nlohmann::ordered_json values;
   std::optional<FileFailure> failure;
 };
 
-// Calls `measure` for every pair, in parallel, and `on_result` in the order of the pairs, one call
-// at a time. An exception of `measure` becomes the failure of its pair.
-void measure_pairs(const PairSource& pairs,
-                   const std::function<nlohmann::ordered_json(const MeshPair&)>& measure,
-                   const RunContext& context,
-                   const std::function<void(const PairResult&)>& on_result,
-                   const std::atomic<bool>& stop);
+// Calls `work` for every pair, in parallel, with a result that it completes, and `on_result` in the
+// order of the pairs, one call at a time. An exception of `work` becomes the failure of its pair.
+void run_pairs(const PairSource& pairs, const std::function<void(PairResult&)>& work,
+               const RunContext& context, const std::function<void(const PairResult&)>& on_result,
+               const std::atomic<bool>& stop);
 
 }  // namespace triglyph

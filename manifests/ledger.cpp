@@ -26,7 +26,8 @@ constexpr int kApplicationId = 0x54474c59;
 constexpr int kBusyTimeout = 30000;
 
 // Step i leads from schema i to schema i + 1. Steps are never changed, only added.
-constexpr std::array<const char*, 1> kSteps = {R"sql(
+constexpr std::array<const char*, 2> kSteps = {
+    R"sql(
 CREATE TABLE runs (
   id INTEGER PRIMARY KEY AUTOINCREMENT,
   verb TEXT NOT NULL,
@@ -68,6 +69,16 @@ CREATE TRIGGER marks_stay_as_they_are BEFORE UPDATE ON marks
 BEGIN SELECT RAISE(ABORT, 'marks are never changed'); END;
 CREATE TRIGGER marks_stay BEFORE DELETE ON marks
 BEGIN SELECT RAISE(ABORT, 'marks are never deleted'); END;
+)sql",
+    R"sql(
+CREATE TABLE results (
+  run INTEGER NOT NULL REFERENCES runs (id),
+  place INTEGER NOT NULL,
+  file BLOB NOT NULL,
+  status TEXT NOT NULL,
+  line TEXT NOT NULL,
+  PRIMARY KEY (run, place)
+) WITHOUT ROWID;
 )sql"};
 constexpr int kSchema = static_cast<int>(kSteps.size());
 
@@ -351,6 +362,19 @@ void Ledger::keep(std::string_view target, std::int64_t run, std::uint64_t place
       .step();
 }
 
+void Ledger::note(const LedgerResult& result) {
+  const std::lock_guard lock(database_->mutex);
+  LedgerStatement(*database_,
+                  "INSERT OR REPLACE INTO results (run, place, file, status, line) "
+                  "VALUES (?, ?, ?, ?, ?)")
+      .number(result.run)
+      .number(static_cast<std::int64_t>(result.place))
+      .bytes(result.file)
+      .text(result.status)
+      .text(result.line)
+      .step();
+}
+
 std::optional<LedgerMark> Ledger::mark_of(std::string_view output_hash) const {
   const std::lock_guard lock(database_->mutex);
   LedgerStatement row(*database_,
@@ -386,6 +410,16 @@ void Ledger::for_each_run(const std::function<void(const LedgerRun&)>& visit) co
   while (row.step()) {
     visit({row.number_at(0), row.text_at(1), row.text_at(2), row.text_at(3), row.text_at(4),
            row.text_at(5), row.text_at(6), row.text_at(7)});
+  }
+}
+
+void Ledger::for_each_result(const std::function<void(const LedgerResult&)>& visit) const {
+  const std::lock_guard lock(database_->mutex);
+  LedgerStatement row(*database_,
+                      "SELECT run, place, file, status, line FROM results ORDER BY run, place");
+  while (row.step()) {
+    visit({row.number_at(0), static_cast<std::uint64_t>(row.number_at(1)), row.text_at(2),
+           row.text_at(3), row.text_at(4)});
   }
 }
 

@@ -1,5 +1,5 @@
-// The memory of an owner: one SQLite file that knows every run, the state of every output, and
-// every mark that was ever issued.
+// The memory of an owner: one SQLite file that knows every run, the state of every output, every
+// mark that was ever issued, and what was found in files.
 #pragma once
 
 #include <cstdint>
@@ -53,6 +53,15 @@ struct LedgerMark {
   std::string issued;  // UTC
 };
 
+// What a run that writes no mesh (extract, verify, measure, render) found in one file or pair.
+struct LedgerResult {
+  std::int64_t run = 0;
+  std::uint64_t place = 0;  // in that run, from 0
+  std::string file;         // absolute; of a pair the original
+  std::string status;       // in the words of the verb: "marked", "altered", "crashed", ..
+  std::string line;         // one JSON object: what the verb prints with --json
+};
+
 class Ledger {
  public:
   // Opens the ledger, or creates it with mode 0600. Several processes may have it open: writers
@@ -80,6 +89,9 @@ class Ledger {
   // Says that the run found the item done.
   void keep(std::string_view target, std::int64_t run, std::uint64_t place);
 
+  // Inserts or replaces what the run found at this place.
+  void note(const LedgerResult& result);
+
   // Returns the mark that was issued with this content, if any.
   [[nodiscard]] std::optional<LedgerMark> mark_of(std::string_view output_hash) const;
 
@@ -88,9 +100,11 @@ class Ledger {
   // ledger.
   [[nodiscard]] std::optional<LedgerItem> find_after(std::string_view target) const;
 
-  // Call the function for every mark or run, ascending by number.
+  // Call the function for every mark or run, ascending by number; or every result, by run and
+  // place.
   void for_each_mark(const std::function<void(const LedgerMark&)>& visit) const;
   void for_each_run(const std::function<void(const LedgerRun&)>& visit) const;
+  void for_each_result(const std::function<void(const LedgerResult&)>& visit) const;
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 

@@ -133,6 +133,34 @@ TEST_F(CliRun, ReadersSurviveACrashToo) {
   EXPECT_EQ(lines(measured.out)[2]["status"], "crashed");
 }
 
+TEST_F(CliRun, ALedgerKeepsWhatReadersFound) {
+  make_samples(3);
+  ASSERT_EQ(run("mark in --out out --message m").code, 0);
+  folder_.write("out/1.obj", "v x\n");
+  const std::string log = " --ledger out.ledger";
+  EXPECT_EQ(run("extract out" + log).code, 3);
+  EXPECT_EQ(run("verify" + log, "TRIGLYPH_FAULT='crash 2.obj'").code, 3);
+  const RunResult measured = run("measure in out --json" + log);
+  EXPECT_EQ(measured.code, 3);
+  const auto results = lines(run("ledger results out.ledger").out);
+  ASSERT_EQ(results.size(), 9U);
+  const std::vector<std::string> statuses = {"marked",   "malformed", "marked",
+                                             "intact",   "damaged",   "damaged",
+                                             "measured", "malformed", "measured"};
+  for (std::size_t i = 0; i < 9; ++i) {
+    EXPECT_EQ(results[i]["run"], 2 + i / 3);
+    EXPECT_EQ(results[i]["place"], i % 3);
+    EXPECT_EQ(results[i]["status"], statuses[i]) << i;
+    const std::string folder = i < 6 ? "/out/" : "/in/";
+    EXPECT_NE(results[i]["file"].get<std::string>().find(folder + std::to_string(i % 3) + ".obj"),
+              std::string::npos);
+  }
+  EXPECT_EQ(results[0]["result"]["message_hex"], "6d");
+  EXPECT_NE(results[1]["result"]["error"].get<std::string>().find("line 1"), std::string::npos);
+  EXPECT_EQ(results[6]["result"], lines(measured.out)[0]);
+  EXPECT_EQ(lines(run("ledger export out.ledger").out).size(), 3U);  // outputs alone
+}
+
 TEST_F(CliRun, MeasureComparesFoldersAndRecords) {
   make_samples(3);
   ASSERT_EQ(run("mark in --out out --message m --records r.jsonl").code, 0);
@@ -172,6 +200,57 @@ TEST_F(CliRun, VerifyFindsFilesFromWhereTheRunStoodOrBelowARoot) {
   EXPECT_EQ(run("verify").code, 2);
   folder_.write("empty.jsonl", "");
   EXPECT_EQ(run("verify empty.jsonl").code, 2);  // no records is not "all is well"
+}
+
+// The cut of a quad that is nearly square and flat turns over once its corners move. What the
+// reason names helps.
+TEST_F(CliRun, QuadsWhoseCutTurnsOverAreNotVerifiedAndTrianglesAre) {
+  constexpr int kSide = 20;
+  std::string points;
+  std::string quads;
+  std::string triangles;
+  for (int i = 0; i <= kSide; ++i) {
+    for (int j = 0; j <= kSide; ++j) {
+      const auto shaken = [&](int seed) { return (i * 37 + j * 101 + seed * i * j) % 13 * 1e-4; };
+      points += "v " + std::to_string(i + shaken(7)) + " " + std::to_string(j + shaken(11)) + " " +
+                std::to_string(shaken(17)) + "\n";
+      if (i == kSide || j == kSide) continue;
+      const int at = i * (kSide + 1) + j + 1;
+      const std::string a = std::to_string(at) + " ";
+      const std::string b = std::to_string(at + kSide + 1) + " ";
+      const std::string c = std::to_string(at + kSide + 2) + " ";
+      const std::string d = std::to_string(at + 1) + " ";
+      quads.append("f ").append(a).append(b).append(c).append(d).append("\n");
+      triangles.append("f ").append(a).append(b).append(c).append("\n");
+      triangles.append("f ").append(a).append(c).append(d).append("\n");
+    }
+  }
+  folder_.write("quads.obj", points + quads);
+  folder_.write("triangles.obj", points + triangles);
+  const RunResult refused = run("mark quads.obj --fill --out o --json");
+  EXPECT_EQ(refused.code, 3);
+  EXPECT_EQ(lines(refused.out)[0]["status"], "not verified");
+  EXPECT_NE(refused.err.find("export the mesh as triangles"), std::string::npos) << refused.err;
+  EXPECT_EQ(run("mark triangles.obj --fill --out o").code, 0);
+}
+
+TEST_F(CliRun, AMeshWithoutTheMemoryItTakesSaysSo) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "the sanitizers' own memory has no limit";
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+  GTEST_SKIP() << "the sanitizers' own memory has no limit";
+#endif
+#endif
+  make_samples(1, 300000);
+  const RunResult result =
+      run("mark in --message m --out out --threads 1 --json", "ulimit -v 160000;");
+  EXPECT_EQ(result.code, 3) << result.err;
+  const auto records = lines(result.out);
+  ASSERT_EQ(records.size(), 1U) << result.err;
+  EXPECT_EQ(records[0]["status"], "failed");
+  EXPECT_NE(result.err.find("not enough memory: this mesh takes about "), std::string::npos)
+      << result.err;
 }
 
 TEST_F(CliRun, GivesUpAfterTooManyFailures) {

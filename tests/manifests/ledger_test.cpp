@@ -140,6 +140,57 @@ TEST(Ledger, RefusesWhatIsNoLedgerAndLeavesItAsItIs) {
   EXPECT_NE(change("later", 63, 99).find("newer triglyph"), std::string::npos);
 }
 
+TEST(Ledger, KeepsWhatARunFoundInFiles) {
+  const test::TempFolder folder;
+  const auto results = [&] {
+    std::vector<LedgerResult> all;
+    Ledger(folder / "l").for_each_result([&](const LedgerResult& one) { all.push_back(one); });
+    return all;
+  };
+  {
+    Ledger ledger(folder / "l");
+    const std::int64_t first = ledger.begin_run({.verb = "extract"});
+    const std::int64_t second = ledger.begin_run({.verb = "verify"});
+    ledger.note({.run = second, .place = 0, .file = "/c", .status = "intact", .line = "{}"});
+    ledger.note({.run = first, .place = 1, .file = "/b\xff", .status = "no mark", .line = "{}"});
+    ledger.note({.run = first, .place = 0, .file = "/a", .status = "x", .line = "{}"});
+    // a worker that was killed may have noted it and not said so
+    ledger.note({.run = first, .place = 0, .file = "/a", .status = "marked", .line = "{\"a\":1}"});
+  }
+  const auto all = results();
+  ASSERT_EQ(all.size(), 3U);
+  EXPECT_EQ(all[0].status, "marked");
+  EXPECT_EQ(all[0].line, "{\"a\":1}");
+  EXPECT_EQ(all[1].file, "/b\xff");
+  EXPECT_EQ(all[1].place, 1U);
+  EXPECT_EQ(all[2].run, all[0].run + 1);
+}
+
+// A ledger that the build of schema 1 wrote: one run, two outputs and their marks.
+TEST(Ledger, OpensOneOfAnEarlierSchemaWithAllThatItKnows) {
+  const test::TempFolder folder;
+  const auto path = folder.write(
+      "l", test::read_all(std::filesystem::path(TRIGLYPH_SOURCE) / "tests/golden/schema-1.ledger"));
+  ASSERT_EQ(test::read_all(path)[63], 1);  // the user version, see above
+  for (int opened = 0; opened < 2; ++opened) {
+    Ledger ledger(path);
+    EXPECT_EQ(count_marks(ledger), 2U);
+    const auto item = ledger.find_after("");
+    ASSERT_TRUE(item);
+    EXPECT_EQ(item->status, "marked");
+    ASSERT_TRUE(ledger.find_after(item->target));
+    std::vector<LedgerRun> runs;
+    ledger.for_each_run([&](const LedgerRun& run) { runs.push_back(run); });
+    ASSERT_EQ(runs.size(), 1U);
+    EXPECT_EQ(runs[0].outcome, "done");
+    ledger.note({.run = 1, .place = 0, .file = "/a", .status = "marked", .line = "{}"});
+    std::size_t results = 0;
+    ledger.for_each_result([&](const LedgerResult&) { ++results; });
+    EXPECT_EQ(results, 1U);
+  }
+  EXPECT_EQ(test::read_all(path)[63], 2);
+}
+
 TEST(Ledger, TakesWritersOfManyThreadsAndProcesses) {
   const test::TempFolder folder;
   const auto path = folder / "l";
