@@ -2,22 +2,38 @@
 #include <iostream>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "cli/app.h"
+#include "cli/renderer.h"
 #include "cli/run_arguments.h"
 #include "cli/sibling.h"
 #include "cli/verbs.h"
 #include "engine/base/error.h"
+#include "engine/base/text.h"
+#include "manifests/file_runs.h"
+#include "manifests/json_line.h"
 #include "manifests/ledger.h"
-#include "manifests/pairs.h"
 
 namespace triglyph {
 namespace {
 
 namespace fs = std::filesystem;
+
+// What is drawn and how, where it is a collection.
+struct CollectionArguments {
+  std::vector<std::string> names;
+  std::vector<std::string> drawing;  // the options of the renderer
+  fs::path out;                      // a folder
+  bool json = false;
+  RunArguments run;
+
+  void add_to(CLI::App& app) {
+    app.add_flag("--json", json, "Print one JSON object per pair of a collection");
+    run.add_to(app);
+  }
+};
 
 // Returns the words before the first option: what is to be drawn.
 std::vector<std::string> leading_names(const std::vector<std::string>& words) {
@@ -27,66 +43,96 @@ std::vector<std::string> leading_names(const std::vector<std::string>& words) {
   return {words.begin(), end};
 }
 
-// Removes the option and its value from the words, and returns the value.
-std::optional<std::string> take_option(std::vector<std::string>& words, const std::string& name) {
-  for (auto word = words.begin(); word != words.end(); ++word) {
-    if (word->rfind(name + "=", 0) == 0) {
-      std::string value = word->substr(name.size() + 1);
-      words.erase(word);
-      return value;
-    }
-    if (*word != name || word + 1 == words.end()) continue;
-    std::string value = *(word + 1);
-    words.erase(word, word + 2);
-    return value;
+bool asks_for_help(const std::vector<std::string>& words) {
+  return std::any_of(words.begin(), words.end(),
+                     [](const std::string& word) { return word == "--help" || word == "-h"; });
+}
+
+// Takes the options of the run from the words after the names; those that it does not know are the
+// renderer's. Throws Error Usage.
+void parse(std::vector<std::string> options, CollectionArguments& arguments) {
+  CLI::App parser;
+  parser.set_help_flag();
+  parser.allow_extras();
+  parser.add_option("--out", arguments.out);
+  arguments.add_to(parser);
+  std::reverse(options.begin(), options.end());  // as the parser takes them
+  try {
+    parser.parse(options);
+  } catch (const CLI::ParseError& error) {
+    throw Error(ErrorCode::Usage, {}, "", error.what());
   }
-  return std::nullopt;
+  arguments.drawing = parser.remaining();
+  if (arguments.out.empty()) {
+    throw Error(ErrorCode::Usage, {}, "", "--out names the folder for the pictures");
+  }
 }
 
-// Notes the run in the ledger, if one is named. Returns its number.
-std::int64_t begin_logged(std::optional<Ledger>& ledger, const std::optional<std::string>& path) {
-  if (!path) return 0;
-  LedgerRun run;
-  run.verb = "render";
-  run.command = command_line();
-  std::error_code ignored;
-  run.directory = fs::current_path(ignored).string();
-  run.version = TRIGLYPH_VERSION;
-  return ledger.emplace(*path).begin_run(run);
+fs::path picture_of(const MeshPair& pair, const fs::path& folder) {
+  return folder / (pair.name.string() + ".png");
 }
 
-// Draws every pair into the folder that --out names; --ledger notes the run, and all other options
-// are the renderer's.
-int draw_all(const std::vector<std::string>& names, std::vector<std::string> options) {
-  const std::optional<std::string> out = take_option(options, "--out");
-  if (!out) throw Error(ErrorCode::Usage, {}, "", "--out names the folder for the pictures");
+std::string_view status_of(const PairResult& result) {
+  return result.failure ? name_of(result.failure->status) : "drawn";
+}
+
+nlohmann::ordered_json json_of(const PairResult& result, const fs::path& folder) {
+  nlohmann::ordered_json json;
+  put_path(json, "original", result.pair.original);
+  put_path(json, "marked", result.pair.marked);
+  put_path(json, "picture", picture_of(result.pair, folder));
+  json["status"] = status_of(result);
+  if (result.failure) json["error"] = result.failure->error;
+  return json;
+}
+
+void print_drawn(const PairResult& result, const CollectionArguments& arguments) {
+  if (result.failure) std::cerr << "triglyph: " << printable(result.failure->error) << "\n";
+  if (!arguments.json) return;
+  std::cout << to_line(json_of(result, arguments.out));
+  std::cout.flush();
+  check_standard_output();  // nobody is there to read the rest
+}
+
+int draw_share(const CollectionArguments& arguments, const WorkOrder& order) {
+  RendererPool renderers(arguments.drawing, arguments.run.threads());
   std::optional<Ledger> ledger;
-  const std::int64_t run = begin_logged(ledger, take_option(options, "--ledger"));
-  const PairSource next = pairs_of(names);
-  options.insert(options.begin(), "--batch");
-  RenderBatch batch(options);
-  std::size_t pairs = 0;
-  while (const std::optional<MeshPair> pair = next()) {
-    batch.draw(pair->original, pair->marked, fs::path(*out) / (pair->name.string() + ".png"));
-    ++pairs;
-  }
-  const std::optional<std::size_t> failed = batch.finish();
-  if (!failed) throw std::runtime_error("triglyph-render ended before it had drawn all pictures");
-  const bool is_done = *failed == 0;
-  std::cerr << "triglyph: " << pairs << (pairs == 1 ? " pair: " : " pairs: ") << pairs - *failed
-            << " drawn, " << *failed << " failed\n";
-  if (ledger) ledger->end_run(run, is_done ? "done" : "some failed");
-  return is_done ? kDone : kSomeFailed;
+  if (!arguments.run.ledger().empty()) ledger.emplace(arguments.run.ledger());
+  const LoggedRun run(ledger ? &*ledger : nullptr, order, "render");
+  RunTally tally(arguments.run, order, 0, {"drawn", "failed"});
+  run_pairs(
+      pairs_of(arguments.names),
+      [&](PairResult& result) {
+        result.failure = renderers.draw(result.pair, picture_of(result.pair, arguments.out));
+      },
+      arguments.run.context(order),
+      [&](const PairResult& result) {
+        tally.clear_bar();
+        print_drawn(result, arguments);
+        run.note(result.pair.original, status_of(result), json_of(result, arguments.out));
+        const bool failed = result.failure.has_value();
+        tally.count(failed ? 1 : 0, failed, false, result.pair.original);
+      },
+      order.board->stop());
+  if (order.only) return kDone;
+  const int code = tally.finish("pair", "pairs");
+  run.end(code);
+  return code;
 }
 
 int run_render(const std::vector<std::string>& words) {
-  const std::vector<std::string> names = leading_names(words);
+  CollectionArguments arguments;
+  arguments.names = leading_names(words);
+  const std::vector<std::string>& names = arguments.names;
   const bool names_many = names.size() == 2
                               ? name_many_pairs(names)
                               : names.size() == 1 && (fs::path(names[0]).extension() == ".jsonl" ||
                                                       fs::path(names[0]).extension() == ".ledger");
-  if (!names_many) exec_renderer(words);
-  return draw_all(names, {words.begin() + static_cast<std::ptrdiff_t>(names.size()), words.end()});
+  if (!names_many || asks_for_help(words)) exec_renderer(words);
+  parse({words.begin() + static_cast<std::ptrdiff_t>(names.size()), words.end()}, arguments);
+  (void)pairs_of(names);  // a mistake is to be known before the run
+  return arguments.run.supervised(
+      [&](const WorkOrder& order) { return draw_share(arguments, order); });
 }
 
 }  // namespace
@@ -99,6 +145,13 @@ void add_render_verb(CLI::App& app, Action& action) {
   verb->set_help_flag();
   verb->callback(
       [&action, verb] { action = [rest = verb->remaining()] { return run_render(rest); }; });
+}
+
+void declare_collection_options(CLI::App& renderer) {
+  auto arguments = std::make_shared<CollectionArguments>();
+  renderer.remove_option(renderer.get_option("--threads"));  // the run has it as well
+  arguments->add_to(renderer);
+  renderer.callback([arguments] {});  // keeps what the options refer to
 }
 
 }  // namespace triglyph

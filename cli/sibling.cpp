@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include <fcntl.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -59,37 +60,44 @@ void exec_renderer(const std::vector<std::string>& arguments) {
   fail_to_start(program);
 }
 
-RenderBatch::RenderBatch(const std::vector<std::string>& arguments) {
+RendererProcess start_renderer(const std::vector<std::string>& arguments, bool dies_with_thread) {
   const fs::path program = find_renderer();
   std::vector<char*> all = argument_vector(program, arguments);
   int jobs[2];
-  int answer[2];
+  int answers[2];
   if (pipe2(jobs, O_CLOEXEC) != 0) fail_to_start(program);
-  if (pipe2(answer, O_CLOEXEC) != 0) {
+  if (pipe2(answers, O_CLOEXEC) != 0) {
     close(jobs[0]);
     close(jobs[1]);
     fail_to_start(program);
   }
-  process_ = fork();
-  if (process_ == 0) {
+  const pid_t parent = getpid();
+  const pid_t child = fork();
+  if (child == 0) {
+    if (dies_with_thread) {
+      prctl(PR_SET_PDEATHSIG, SIGKILL);
+      if (getppid() != parent) _exit(1);
+    }
     // the run handles interrupts, and then stops its renderer
     std::signal(SIGINT, SIG_IGN);
     dup2(jobs[0], STDIN_FILENO);
-    dup2(answer[1], STDOUT_FILENO);
+    dup2(answers[1], STDOUT_FILENO);
     execv(program.c_str(), all.data());
     _exit(127);
   }
   close(jobs[0]);
-  close(answer[1]);
-  pipe_ = jobs[1];
-  answer_ = answer[0];
-  if (process_ < 0) {
-    close(pipe_);
-    close(answer_);
+  close(answers[1]);
+  if (child < 0) {
+    close(jobs[1]);
+    close(answers[0]);
     fail_to_start(program);
   }
-  std::signal(SIGPIPE, SIG_IGN);  // finish() reports a renderer that died
+  std::signal(SIGPIPE, SIG_IGN);
+  return {child, jobs[1], answers[0]};
 }
+
+RenderBatch::RenderBatch(const std::vector<std::string>& arguments)
+    : process_(start_renderer(arguments, false)) {}
 
 RenderBatch::~RenderBatch() {
   (void)finish();
@@ -103,7 +111,7 @@ void RenderBatch::draw(const fs::path& original, const fs::path& marked, const f
   const std::string line = to_line(job);
   std::size_t sent = 0;
   while (sent < line.size()) {
-    const ssize_t count = write(pipe_, line.data() + sent, line.size() - sent);
+    const ssize_t count = write(process_.jobs, line.data() + sent, line.size() - sent);
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) return;
     sent += static_cast<std::size_t>(count);
@@ -111,24 +119,24 @@ void RenderBatch::draw(const fs::path& original, const fs::path& marked, const f
 }
 
 void RenderBatch::stop() const {
-  if (process_ >= 0) kill(process_, SIGTERM);
+  if (process_.id >= 0) kill(process_.id, SIGTERM);
 }
 
 std::optional<std::size_t> RenderBatch::finish() {
-  if (process_ < 0) return 0;
-  close(pipe_);
+  if (process_.id < 0) return 0;
+  close(process_.jobs);
   std::string answer;
   for (char letter = 0;;) {
-    const ssize_t count = read(answer_, &letter, 1);
+    const ssize_t count = read(process_.answers, &letter, 1);
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) break;
     answer += letter;
   }
-  close(answer_);
+  close(process_.answers);
   int status = 0;
-  while (waitpid(process_, &status, 0) < 0 && errno == EINTR) {
+  while (waitpid(process_.id, &status, 0) < 0 && errno == EINTR) {
   }
-  process_ = -1;
+  process_.id = -1;
   std::size_t failed = 0;
   const char* end = answer.data() + answer.size();
   const bool is_answer = std::from_chars(answer.data(), end, failed).ec == std::errc();

@@ -18,6 +18,19 @@ namespace triglyph {
 // started.
 [[noreturn]] void exec_renderer(const std::vector<std::string>& arguments);
 
+// A child process triglyph-render, with pipes to its standard input and from its standard output.
+struct RendererProcess {
+  int id = -1;
+  int jobs = -1;
+  int answers = -1;
+};
+
+// Starts triglyph-render, deaf to SIGINT. It is killed when the thread that started it ends, if
+// `dies_with_thread`. SIGPIPE is ignored from then on in this process too, so that writing to a
+// renderer that died is an error. Throws Error Usage if it cannot be started.
+[[nodiscard]] RendererProcess start_renderer(const std::vector<std::string>& arguments,
+                                             bool dies_with_thread);
+
 // A child process triglyph-render --batch, which draws pictures while the run continues.
 class RenderBatch {
  public:
@@ -40,9 +53,7 @@ class RenderBatch {
   [[nodiscard]] std::optional<std::size_t> finish();
 
  private:
-  int pipe_ = -1;    // of jobs
-  int answer_ = -1;  // of the renderer's last line
-  int process_ = -1;
+  RendererProcess process_;
 };
 
 }  // namespace triglyph

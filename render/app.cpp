@@ -1,10 +1,12 @@
 #include "render/app.h"
 
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -13,6 +15,8 @@
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
 #include "engine/io/mesh_file.h"
+#include "engine/marking/mark_file.h"
+#include "engine/marking/refusal.h"
 #include "engine/message/key.h"
 #include "render/arguments.h"
 #include "render/colours.h"
@@ -84,8 +88,16 @@ fs::path path_in(const nlohmann::json& job, const std::string& key) {
   return std::string(bytes.begin(), bytes.end());
 }
 
-// Reads one JSON object per line from standard input: {"original", "marked", "out"}, each also as
-// "<key>_bytes". Prints the number of jobs that failed in the end, unless it is stopped.
+// Draws the picture of a job {"original", "marked", "out"}, each also as "<key>_bytes".
+void draw_job(const RenderArguments& arguments, const nlohmann::json& job) {
+  const auto draw = [&] {
+    draw_pair(arguments, path_in(job, "original"), path_in(job, "marked"), path_in(job, "out"));
+  };
+  job.contains("threads") ? with_threads(job.at("threads").get<int>(), draw) : draw();
+}
+
+// Reads one job per line from standard input. Prints the number of jobs that failed in the end,
+// unless it is stopped.
 int draw_batch(const RenderArguments& arguments) {
   std::signal(SIGTERM, [](int) {
     stop_requested = 1;
@@ -95,8 +107,7 @@ int draw_batch(const RenderArguments& arguments) {
   for (std::string line; stop_requested == 0 && std::getline(std::cin, line);) {
     ++number;
     try {
-      const auto job = nlohmann::json::parse(line);
-      draw_pair(arguments, path_in(job, "original"), path_in(job, "marked"), path_in(job, "out"));
+      draw_job(arguments, nlohmann::json::parse(line));
     } catch (const std::exception& error) {
       std::cerr << "triglyph-render: line " << number << ": " << error.what() << "\n";
       ++failed;
@@ -107,9 +118,53 @@ int draw_batch(const RenderArguments& arguments) {
   return failed == 0 ? 0 : kSomeFailed;
 }
 
+// Returns why the line's picture is not there, or an empty object.
+nlohmann::ordered_json answer_to(const RenderArguments& arguments, const std::string& line) {
+  fs::path original;
+  const auto failure = [&](FileStatus status, const std::string& error, bool names_file) {
+    const std::string place = names_file ? "" : original.string() + ": ";
+    return nlohmann::ordered_json{{"status", name_of(status)}, {"error", place + error}};
+  };
+  try {
+    const auto job = nlohmann::json::parse(line);
+    original = path_in(job, "original");
+    draw_job(arguments, job);
+    return nlohmann::ordered_json::object();
+  } catch (const Error& error) {
+    return failure(file_status(error.code()), error.what(), !error.path().empty());
+  } catch (const std::bad_alloc&) {
+    std::error_code ignored;
+    const auto bytes = fs::file_size(original, ignored);
+    const std::uint64_t estimate = estimate_memory(ignored ? 0 : bytes, original, false);
+    return failure(FileStatus::Failed, too_little_memory(estimate), false);
+  } catch (const std::exception& error) {
+    return failure(FileStatus::Failed, error.what(), false);
+  }
+}
+
+// Reads one job per line from standard input, and answers each with a line before it reads the
+// next, until its input ends.
+int answer_batch(const RenderArguments& arguments) {
+  std::cout << "{}" << std::endl;
+  for (std::string line; std::getline(std::cin, line);) {
+    constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;
+    std::cout << answer_to(arguments, line).dump(-1, ' ', false, kReplace) << std::endl;
+  }
+  return 0;
+}
+
+// Throws Error Usage for sizes and views that no mesh can be drawn with, before the first is.
+void check_options(const PictureOptions& options) {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.triangles = {{0, 1, 2}};
+  (void)camera_for(mesh, drawable(mesh, options));
+}
+
 int run(RenderArguments arguments) {
   arguments.picture.background = background_named(arguments.background);
-  if (arguments.batch) return draw_batch(arguments);
+  check_options(arguments.picture);
+  if (arguments.batch) return arguments.answer ? answer_batch(arguments) : draw_batch(arguments);
   if (arguments.original.empty() || arguments.out.empty()) {
     throw Error(ErrorCode::Usage, {}, "", "a mesh to draw and --out are needed");
   }

@@ -69,9 +69,15 @@ std::unique_ptr<CLI::App> make_render_app(RenderArguments& arguments) {
   app.add_flag("--batch", arguments.batch,
                "Draw the pairs that standard input lists, one JSON object per line:\n"
                "{\"original\": MESH, \"marked\": MESH, \"out\": FILE}");
+  app.add_flag("--answer", arguments.answer,
+               "With --batch: print {} once it can begin, and for each line {} when its picture is "
+               "there,\nor {\"status\": TEXT, \"error\": TEXT}; a line may say \"threads\": N");
   app.footer(
       "Draw a mesh, its marked copy and where they differ:\n"
-      "  triglyph render a.obj marked/a.obj --out a.png --panels original,marked,distance");
+      "  triglyph render a.obj marked/a.obj --out a.png --panels original,marked,distance\n"
+      "Draw every mesh of a run, as a run with the options --json, --memory, --timeout,\n"
+      "--max-failures, --fail-fast, --quiet and --ledger of measure:\n"
+      "  triglyph render run.jsonl --out pictures --timeout 60");
   return parser;
 }
 

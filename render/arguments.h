@@ -20,6 +20,7 @@ struct RenderArguments {
   int turntable = 0;  // pictures all round; 0: one picture
   int threads = 0;    // 0: all
   bool batch = false;
+  bool answer = false;
   PictureOptions picture;
 
   // Returns the panels asked for, or those that suit the meshes given.

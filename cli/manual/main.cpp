@@ -31,6 +31,7 @@ int main(int argc, char** argv) {
   const auto app = triglyph::make_app(action);
   triglyph::RenderArguments render_arguments;
   const auto render = triglyph::make_render_app(render_arguments);
+  triglyph::declare_collection_options(*render);
   bool is_written =
       write(folder / "triglyph.1", triglyph::man_page(*app, "triglyph", version)) &&
       write(folder / "triglyph.bash", triglyph::bash_completion(*app, {{"render", render.get()}}));

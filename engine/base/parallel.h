@@ -105,12 +105,17 @@ void run_isolated(const Work& work) {
   tbb::this_task_arena::isolate(work);
 }
 
-// Runs `work` in an arena of `threads` threads, and limits oneTBB to that number in the whole
-// process meanwhile. 0: as many as the machine has.
+// Returns the number of threads that a user's number means. 0: as many as the machine has.
+[[nodiscard]] inline int thread_count(int threads) {
+  return threads > 0 ? threads
+                     : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+}
+
+// Runs `work` in an arena of `threads` threads, see thread_count(), and limits oneTBB to that
+// number in the whole process meanwhile.
 template <typename Work>
 void with_threads(int threads, const Work& work) {
-  const int count =
-      threads > 0 ? threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  const int count = thread_count(threads);
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   static_cast<std::size_t>(count));
   tbb::task_arena arena(count);

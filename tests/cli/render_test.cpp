@@ -1,9 +1,17 @@
 // triglyph render and mark --render, through the executables.
+#include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <iterator>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include "engine/base/output_file.h"
 #include "engine/io/export_mesh.h"
@@ -35,6 +43,14 @@ class CliRender : public testing::Test {
     return run("'" TRIGLYPH_EXECUTABLE "' " + arguments + " </dev/null");
   }
   [[nodiscard]] std::string message() const { return test::read_all(folder_ / ".err"); }
+  // Waits until there is no such process.
+  [[nodiscard]] static bool ends(pid_t process) {
+    for (int i = 0; i < 1000; ++i) {
+      if (kill(process, 0) != 0) return true;
+      usleep(10000);
+    }
+    return false;
+  }
   [[nodiscard]] bool is_png(const std::string& name) const {
     return test::read_all(folder_ / name).rfind("\x89PNG", 0) == 0;
   }
@@ -109,6 +125,181 @@ TEST_F(CliRender, GoesOnAfterABadLineOfABatch) {
   EXPECT_NE(message().find("line 1"), std::string::npos);
   EXPECT_NE(message().find("absent.obj"), std::string::npos);
   EXPECT_TRUE(is_png("2.png"));
+}
+
+// What triglyph says to a renderer that fails, with a script in its place: it draws by writing the
+// name of the mesh, and does what the mesh's name says.
+class CliRenderRun : public CliRender {
+ protected:
+  CliRenderRun() {
+    fs::create_directory(folder_ / "bin");
+    fs::copy_file(TRIGLYPH_EXECUTABLE, folder_ / "bin/triglyph");
+    folder_.write("bin/triglyph-render", R"sh(#!/bin/bash
+[[ $* == *--bad* ]] && { echo 'no such option' >&2; exit 2; }
+echo "$*" >>started
+echo '{}'
+while IFS= read -r line; do
+  mesh=$(sed 's/.*"original":"\([^"]*\)".*/\1/' <<<"$line")
+  picture=$(sed 's/.*"out":"\([^"]*\)".*/\1/' <<<"$line")
+  case $mesh in
+    *crash*) kill -SEGV $$ ;;
+    *killed*) kill -KILL $$ ;;
+    *exit*) exit 7 ;;
+    *hang*) echo $$ >hanging; exec sleep 100 ;;
+    *nonsense*) echo nonsense; continue ;;
+    *bad*) echo '{"status": "malformed", "error": "'"$mesh"': is bad"}'; continue ;;
+  esac
+  mkdir -p "$(dirname "$picture")"
+  echo "$mesh" >"$picture"
+  echo '{}'
+done
+)sh");
+    fs::permissions(folder_ / "bin/triglyph-render", fs::perms::owner_all);
+  }
+
+  void make_pairs(const std::vector<std::string>& names) const {
+    for (const std::string& name : names) {
+      folder_.write("in/" + name, "v 0 0 0\n");
+      folder_.write("o/" + name, "v 0 0 0\n");
+    }
+  }
+  int render(const std::string& arguments, const std::string& environment = "") const {
+    return run(environment + " bin/triglyph render in o --out p " + arguments + " </dev/null");
+  }
+  [[nodiscard]] std::vector<nlohmann::json> lines() const {
+    std::vector<nlohmann::json> all;
+    std::istringstream text(test::read_all(folder_ / ".out"));
+    for (std::string line; std::getline(text, line);) all.push_back(nlohmann::json::parse(line));
+    return all;
+  }
+  // The statuses of the pairs, in their order.
+  [[nodiscard]] std::vector<std::string> statuses() const {
+    std::vector<std::string> all;
+    for (const auto& line : lines()) all.push_back(line.at("status"));
+    return all;
+  }
+  [[nodiscard]] std::size_t pictures() const {
+    const auto files = fs::directory_iterator(folder_ / "p");
+    return static_cast<std::size_t>(std::distance(begin(files), end(files)));
+  }
+};
+
+TEST_F(CliRenderRun, APictureThatKillsItsRendererCostsOneRecord) {
+  make_pairs({"0.obj", "1.obj", "2crash.obj", "3.obj", "4exit.obj", "5nonsense.obj", "6bad.obj",
+              "7.obj", "8killed.obj", "9.obj"});
+  for (const char* threads : {"1", "3"}) {
+    fs::remove_all(folder_ / "p");
+    EXPECT_EQ(render(std::string("--json --threads ") + threads), 3) << message();
+    EXPECT_EQ(statuses(),
+              (std::vector<std::string>{"drawn", "drawn", "crashed", "drawn", "crashed", "crashed",
+                                        "malformed", "drawn", "crashed", "drawn"}))
+        << message();
+    EXPECT_EQ(pictures(), 5U);
+    EXPECT_NE(message().find("in/2crash.obj: killed the renderer by signal 11"), std::string::npos)
+        << message();
+    EXPECT_NE(message().find("in/4exit.obj: ended the renderer with exit code 7"),
+              std::string::npos);
+    EXPECT_NE(message().find("in/6bad.obj: is bad"), std::string::npos);
+    EXPECT_NE(message().find("in/8killed.obj: killed the process by signal 9"), std::string::npos);
+    EXPECT_NE(message().find("10 pairs: 5 drawn, 5 failed"), std::string::npos);
+  }
+  EXPECT_EQ(lines()[3]["picture"], "p/3.obj.png");
+}
+
+// A crash of the worker itself is the supervisor's business, as in every run.
+TEST_F(CliRenderRun, SurvivesACrashOfTheWorker) {
+  make_pairs({"0.obj", "1.obj", "2.obj", "3.obj"});
+  EXPECT_EQ(render("--json", "TRIGLYPH_FAULT='crash 2.obj'"), 3);
+  EXPECT_EQ(statuses(), (std::vector<std::string>{"drawn", "drawn", "crashed", "drawn"}));
+}
+
+TEST_F(CliRenderRun, APictureThatTakesTooLongCostsOneRecord) {
+  make_pairs({"0.obj", "1hang.obj", "2.obj"});
+  EXPECT_EQ(render("--json --timeout 1 --threads 1"), 3);
+  EXPECT_EQ(statuses(), (std::vector<std::string>{"drawn", "too slow", "drawn"})) << message();
+  // the renderer went with the worker
+  const int hanging = std::stoi(test::read_all(folder_ / "hanging"));
+  EXPECT_TRUE(ends(hanging));
+}
+
+TEST_F(CliRenderRun, AnInterruptEndsTheRunAndItsRenderers) {
+  make_pairs({"0.obj", "1hang.obj", "2.obj"});
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_EQ(run("timeout --signal=INT 1 bin/triglyph render in o --out p --json --threads 1"), 124);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+  EXPECT_EQ(statuses(), std::vector<std::string>{"drawn"});
+  EXPECT_TRUE(ends(std::stoi(test::read_all(folder_ / "hanging"))));
+  EXPECT_EQ(run("timeout --preserve-status --signal=INT 1 bin/triglyph render in o --out p"), 130);
+}
+
+TEST_F(CliRenderRun, HasTheOptionsOfARun) {
+  make_pairs({"0.obj", "1bad.obj", "2bad.obj", "3bad.obj", "4bad.obj", "5.obj"});
+  EXPECT_EQ(render("--threads 1 --fail-fast --json"), 3);
+  EXPECT_NE(message().find("given up after 1 failures"), std::string::npos) << message();
+  EXPECT_LT(lines().size(), 6U);
+  EXPECT_EQ(render("--max-failures 2 --threads 1 --json"), 3);
+  EXPECT_NE(message().find("given up after 3 failures"), std::string::npos) << message();
+  EXPECT_EQ(render("--quiet"), 3);
+  EXPECT_EQ(message().find("pairs"), std::string::npos);
+  EXPECT_NE(message().find("in/1bad.obj: is bad"), std::string::npos);
+  EXPECT_EQ(test::read_all(folder_ / ".out"), "");
+  EXPECT_EQ(render("--ledger l"), 3);
+  EXPECT_EQ(run("bin/triglyph ledger results l"), 0);
+  ASSERT_EQ(lines().size(), 6U);
+  EXPECT_EQ(lines()[1]["status"], "malformed");
+  EXPECT_EQ(lines()[5]["status"], "drawn");
+  EXPECT_EQ(render("--width 7 --view=-30,10"), 3);  // the renderer's own options are passed on
+  EXPECT_NE(test::read_all(folder_ / "started").find("--width 7 --view=-30,10"), std::string::npos);
+}
+
+TEST_F(CliRenderRun, MistakesEndItBeforeTheFirstPicture) {
+  make_pairs({"0.obj"});
+  for (const char* wrong : {"--bad", "--timeout x", "--max-failures x", "--threads 0"}) {
+    EXPECT_EQ(render(wrong), 2) << wrong;
+    EXPECT_FALSE(message().empty()) << wrong;
+    EXPECT_FALSE(fs::exists(folder_ / "p")) << wrong;
+  }
+  fs::remove(folder_ / "bin/triglyph-render");
+  EXPECT_EQ(render("", "PATH=/usr/bin:/bin"), 2);
+  EXPECT_NE(message().find("triglyph-render"), std::string::npos);
+}
+
+// The real renderer says what is wrong with its options before it says that it can begin.
+TEST_F(CliRender, OfACollectionRefusesOptionsBeforeTheFirstPicture) {
+  fs::create_directory(folder_ / "in");
+  fs::rename(folder_ / "a.obj", folder_ / "in/a.obj");
+  for (const char* wrong : {"--view up", "--width 1", "--samples 0", "--background pink",
+                            "--panels beauty", "--frobnicate"}) {
+    EXPECT_EQ(triglyph(std::string("render in in --out p ") + wrong), 2) << wrong;
+    EXPECT_FALSE(message().empty()) << wrong;
+    EXPECT_FALSE(fs::exists(folder_ / "p")) << wrong;
+  }
+}
+
+// A collection is drawn by a run, which has options that the renderer does not.
+TEST_F(CliRender, HelpNamesTheOptionsOfARun) {
+  for (const char* command : {"render --help", "render . . --help"}) {
+    ASSERT_EQ(triglyph(command), 0);
+    for (const char* option : {"--json", "--memory", "--timeout", "--max-failures", "--fail-fast",
+                               "--quiet", "--ledger", "--panels"}) {
+      EXPECT_NE(test::read_all(folder_ / ".out").find(option), std::string::npos) << option;
+    }
+  }
+}
+
+TEST_F(CliRender, DrawsTheSamePicturesInARunAsAlone) {
+  fs::create_directories(folder_ / "in");
+  for (const char* name : {"0.obj", "1.obj", "2.obj", "3.obj"}) {
+    fs::copy_file(folder_ / "a.obj", folder_ / "in" / name);
+  }
+  ASSERT_EQ(triglyph("mark in --message m --out o"), 0) << message();
+  ASSERT_EQ(triglyph("render in o --out p --width 64 --samples 2"), 0) << message();
+  ASSERT_EQ(triglyph("render in/2.obj o/2.obj --out 2.png --width 64 --samples 2"), 0);
+  const std::string alone = test::read_all(folder_ / "2.png");
+  EXPECT_EQ(test::read_all(folder_ / "p/2.obj.png"), alone);
+  fs::remove(folder_ / "p/2.obj.png");
+  ASSERT_EQ(triglyph("render in o --out p --width 64 --samples 2 --threads 1"), 0);
+  EXPECT_EQ(test::read_all(folder_ / "p/2.obj.png"), alone);
 }
 
 TEST_F(CliRender, DrawsEveryPairOfFoldersAndRecords) {
