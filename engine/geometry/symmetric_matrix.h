@@ -23,6 +23,20 @@ class SymmetricMatrix {
     }
   }
 
+  SymmetricMatrix& operator+=(const SymmetricMatrix& other) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j <= i; ++j) lower_[i][j] += other.lower_[i][j];
+    }
+    return *this;
+  }
+  SymmetricMatrix& operator*=(double factor) {
+    for (std::array<double, 3>& row : lower_) {
+      for (double& entry : row) entry *= factor;
+    }
+    return *this;
+  }
+  [[nodiscard]] double trace() const { return lower_[0][0] + lower_[1][1] + lower_[2][2]; }
+
   // Returns the eigenvalues and eigenvectors. An eigenvector's sign is arbitrary but deterministic.
   [[nodiscard]] PrincipalAxes principal_axes() const;
 

@@ -21,6 +21,9 @@ enum class KeyUse : std::uint64_t {
   Keystream = 4,
   Tag = 5,
   Fill = 6,
+  FluxDither = 7,
+  FluxScramble = 8,
+  FluxNumber = 9,
 };
 
 class Key {

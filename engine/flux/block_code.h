@@ -1,0 +1,56 @@
+// The code between a payload of 16 to 64 bits and the bits of the functionals, with soft decoding.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "engine/flux/lattice.h"
+#include "engine/message/key.h"
+
+namespace triglyph {
+
+// What the bits of a payload are.
+enum class FluxContent : std::uint8_t {
+  Message,  // the message itself
+  Number,   // a keyed hash of a message that is too long, or a number that an owner chose
+};
+
+inline constexpr std::array<FluxContent, 2> kFluxContents = {FluxContent::Message,
+                                                             FluxContent::Number};
+
+// Sizes of payloads, in bits: a mark takes the largest that the mesh can hold.
+inline constexpr std::array<int, 4> kPayloadBits = {16, 24, 32, 64};
+
+using FluxBits = std::array<std::uint8_t, kFunctionals>;
+
+// A random linear code over all functionals, plus a keyed word: marks that use fewer functionals
+// have it punctured. Different sizes, contents and keys have independent keyed words, so a payload
+// is never read as one of another kind.
+class BlockCode {
+ public:
+  // Precondition: 1 <= bits <= 64.
+  BlockCode(const Key& key, FluxContent content, int bits);
+
+  [[nodiscard]] FluxContent content() const { return content_; }
+  [[nodiscard]] int bits() const { return bits_; }
+
+  // Returns the bits of all functionals. Bits of the payload above bits() are ignored.
+  [[nodiscard]] FluxBits encode(std::uint64_t payload) const;
+
+  // Returns the payload whose word is likely the best for the soft values; nothing if fewer than
+  // bits() functionals say anything that is independent, or if another word is nearly as good.
+  // Ordered statistics decoding of order 2, or 3 for small payloads: O(bits^2 or bits^3). This work
+  // is based on: Fossorier, Lin. Soft-decision decoding of linear block codes based on ordered
+  // statistics. IEEE Transactions on Information Theory 41 (1995).
+  [[nodiscard]] std::optional<std::uint64_t> decode(const SoftBits& soft) const;
+
+ private:
+  FluxContent content_;
+  int bits_;
+  std::array<std::uint64_t, kFunctionals> columns_{};  // of the generator matrix
+  FluxBits scramble_{};
+};
+
+}  // namespace triglyph

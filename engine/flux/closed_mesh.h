@@ -1,0 +1,35 @@
+// A mesh whose holes are closed, so that it encloses a solid. Flux through a surface and the frame
+// of a solid need one; neither a reader nor a writer shows the caps to anybody.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/mesh/surface.h"
+
+namespace triglyph {
+
+// Every connected boundary becomes a fan around one centre, the mean of its edges' midpoints.
+class ClosedMesh {
+ public:
+  // Closes the holes of a surface. Does not refer to the surface afterwards. O(triangles).
+  explicit ClosedMesh(const Surface& surface);
+
+  // The triangles of the mesh, then those of the fans; centres are the points from points() on.
+  [[nodiscard]] std::span<const Triangle> triangles() const { return triangles_; }
+  // Returns the number of points of the mesh itself.
+  [[nodiscard]] std::size_t points() const { return points_; }
+  // Returns the number of holes that were closed.
+  [[nodiscard]] std::size_t holes() const { return holes_; }
+
+  // Returns the positions followed by the centres that they give. O(points).
+  [[nodiscard]] std::vector<Vec3> with_centres(std::span<const Vec3> positions) const;
+
+ private:
+  std::size_t points_;
+  std::size_t holes_ = 0;
+  std::vector<Triangle> triangles_;
+};
+
+}  // namespace triglyph

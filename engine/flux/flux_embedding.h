@@ -1,0 +1,94 @@
+// Writing a flux mark: the smoothest displacement of the surface that brings every functional to a
+// value that carries its bit and leaves the frame where it is. Which of the values that carry a bit
+// is approached is chosen for the whole mark at once, so that the sum of change is least: the
+// second step of Wang & Hu, CAGD 27 (2010), for a functional in place of a unit.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "engine/flux/block_code.h"
+#include "engine/flux/closed_mesh.h"
+#include "engine/flux/lattice.h"
+#include "engine/flux/thin_plate.h"
+
+namespace triglyph {
+
+// What the shape of a mesh allows.
+enum class FluxObstacle {
+  None,
+  NoVolume,    // the mesh encloses next to nothing: a flat sheet
+  NoAxes,      // two principal axes are equal, as in a ball or a cube: octants have no place
+  TooNarrow,   // the surface lies in too few shells and octants
+  TooVisible,  // no step at which a reader would find a mark moves the surface little enough
+};
+
+struct FluxLimits {
+  double rms_percent = 0.07;  // the root mean square of the moves, of the surface's diagonal
+};
+
+// A mesh prepared for marks of any payload and key: functionals, their derivatives, and the
+// displacements that change one functional alone.
+class FluxCanvas {
+ public:
+  // The surface must outlive the canvas. O(triangles) plus a factorisation, see ThinPlate.
+  explicit FluxCanvas(const Surface& surface);
+  ~FluxCanvas();
+  FluxCanvas(const FluxCanvas&) = delete;
+  FluxCanvas& operator=(const FluxCanvas&) = delete;
+
+  [[nodiscard]] FluxObstacle obstacle() const { return obstacle_; }
+  // Returns the number of functionals that a mark uses.
+  [[nodiscard]] std::size_t used() const { return used_.size(); }
+
+  struct Written {
+    std::vector<Vec3> positions;
+    std::size_t step = 0;    // index, see step_size()
+    double rms_percent = 0;  // of the surface's diagonal
+    double residual = 0;     // root mean square distance of the functionals from their goals, steps
+  };
+  // Returns the positions of all points with the bits embedded at the largest step within the
+  // limits; nothing if there is none.
+  [[nodiscard]] std::optional<Written> write(const FluxBits& bits, const Dither& dither,
+                                             const FluxLimits& limits);
+
+  // Returns the least evidence, in bits, that a mark of this step leaves after the usual noise and
+  // the usual quantisation, before anything is paid for what a reader tries.
+  [[nodiscard]] double expected_evidence(std::size_t step) const;
+  // Returns the largest step within the limits on average over keys; nothing if there is none.
+  [[nodiscard]] std::optional<std::size_t> expected_step(const FluxLimits& limits) const;
+
+ private:
+  struct Basis;
+
+  void make_basis();
+  void measure_noise();
+  // Makes the neighbourhoods of faces that turned too far follow less; false if there are none.
+  [[nodiscard]] bool follow_less(std::span<const Vec3> positions);
+  [[nodiscard]] std::vector<double> changes(const FluxBits& bits, const Dither& dither,
+                                            double step) const;
+  [[nodiscard]] std::vector<Vec3> moved(std::span<const double> unknowns) const;
+  // Returns the used functionals of the surface with other positions; nothing without a frame.
+  [[nodiscard]] std::vector<double> used_values(std::span<const Vec3> positions) const;
+  [[nodiscard]] double squared_move(std::span<const Vec3> positions) const;
+
+  const Surface surface_;
+  ClosedMesh closed_;
+  FluxObstacle obstacle_ = FluxObstacle::None;
+  double diagonal_ = 0;  // of the surface, model units
+  SolidFrame frame_;
+  Measurement before_{};
+  std::vector<std::uint32_t> used_;  // functionals, ascending
+  std::vector<Vec3> directions_;     // unit normals of the points
+  std::vector<double> weights_;      // how far each point follows the displacement, 0 to 1
+  std::optional<ThinPlate> plate_;
+  FluxDerivatives derivatives_;
+  std::vector<std::array<double, kFrameRows>> frame_rows_;
+  std::unique_ptr<Basis> basis_;
+  std::vector<std::vector<double>> noises_;  // changes of the used functionals under attacks
+};
+
+}  // namespace triglyph

@@ -1,0 +1,48 @@
+// Blind reading of a flux mark: nothing is known but the key.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "engine/flux/block_code.h"
+#include "engine/mesh/surface.h"
+
+namespace triglyph {
+
+// A payload, and how it was found.
+struct FluxFound {
+  std::uint64_t payload = 0;
+  int bits = 0;  // of the payload
+  FluxContent content = FluxContent::Message;
+  // Minus the binary logarithm of the probability that any unmarked mesh, or a mesh with the mark
+  // of another key, gives a payload at least as likely: evidence less the price of everything
+  // tried.
+  double evidence = 0;
+  std::string undone;        // what was undone before the payload was read: "", "smoothing 30", ..
+  std::size_t step = 0;      // index, see step_size()
+  std::size_t readable = 0;  // functionals that agree with the payload's word
+};
+
+// Evidence, in bits, at which a payload is believed.
+inline constexpr double kBelieved = 32;
+
+// Returns the payload of a surface's flux mark. Tries what may have been done to it (nothing,
+// smoothing, curvature flow of several strengths), every order and sign of the axes and mirror
+// image, every step, size and content of the payload; each hypothesis pays for itself by its prior,
+// so that the probability of a false payload is 2^-kBelieved for the whole reading. O(triangles)
+// times about 80.
+[[nodiscard]] std::optional<FluxFound> read_flux(const Surface& surface, const Key& key);
+
+// What speaks for a word that is known.
+struct FluxEvidence {
+  double evidence = 0;  // bits, less the price of everything tried; may be negative
+  std::string undone;
+};
+
+// Returns the evidence that a surface carries a given word under a key: as read_flux(), but without
+// the price of a payload. 2^-evidence bounds the probability for an unmarked mesh.
+[[nodiscard]] FluxEvidence flux_evidence(const Surface& surface, const Key& key,
+                                         const FluxBits& word);
+
+}  // namespace triglyph
