@@ -10,6 +10,7 @@
 #include <numeric>
 #include <vector>
 
+#include "engine/attack/stored_mesh.h"
 #include "engine/base/random.h"
 #include "engine/geometry/box.h"
 #include "engine/mesh/mesh.h"
@@ -171,8 +172,6 @@ inline Mesh with_significant_digits(const Mesh& mesh, int digits) {
   return result;
 }
 
-inline Vec3 as_float(const Vec3& p) {
-  return Vec3(static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]));
-}
+using triglyph::as_float;
 
 }  // namespace triglyph::test
