@@ -79,6 +79,8 @@ std::unique_ptr<CLI::App> make_app(Action& action) {
   add_verify_verb(*app, action);
   add_measure_verb(*app, action);
   add_render_verb(*app, action);
+  add_attack_verb(*app, action);
+  add_survive_verb(*app, action);
   add_sample_verb(*app, action);
   add_ledger_verb(*app, action);
   add_keygen_verb(*app, action);

@@ -23,6 +23,7 @@ void add_verify_verb(CLI::App& app, Action& action);
 void add_measure_verb(CLI::App& app, Action& action);
 void add_render_verb(CLI::App& app, Action& action);
 void add_sample_verb(CLI::App& app, Action& action);
-void add_ledger_verb(CLI::App& app, Action& action);
+void add_attack_verb(CLI::App& app, Action& action);
+void add_survive_verb(CLI::App& app, Action& action);
 
 }  // namespace triglyph
