@@ -38,25 +38,6 @@ int exit_code_of(ErrorCode code) {
   return kFatal;
 }
 
-// Returns the least number of letters to insert, delete, replace or swap with a neighbour that turn
-// one word into the other (Damerau-Levenshtein, each place edited once). O(|a| |b|).
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::vector<std::size_t>> rows(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-  for (std::size_t i = 0; i <= a.size(); ++i) {
-    for (std::size_t j = 0; j <= b.size(); ++j) {
-      if (i == 0 || j == 0) {
-        rows[i][j] = i + j;
-        continue;
-      }
-      const std::size_t replaced = rows[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
-      rows[i][j] = std::min({rows[i - 1][j] + 1, rows[i][j - 1] + 1, replaced});
-      const bool swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
-      if (swapped) rows[i][j] = std::min(rows[i][j], rows[i - 2][j - 2] + 1);
-    }
-  }
-  return rows[a.size()][b.size()];
-}
-
 // Names the verb or option that a mistyped word is closest to, if it is close to one.
 void suggest(const CLI::App& app, int argc, char** argv) {
   const auto verbs = app.get_subcommands([](const CLI::App*) { return true; });
@@ -77,11 +58,7 @@ void suggest(const CLI::App& app, int argc, char** argv) {
     const bool is_option = word.rfind("--", 0) == 0;
     if (is_option == (chosen == nullptr)) continue;
     if (std::find(known.begin(), known.end(), word) != known.end()) continue;
-    const auto closest = std::min_element(known.begin(), known.end(), [&](auto& a, auto& b) {
-      return edit_distance(a, word) < edit_distance(b, word);
-    });
-    // a third of the letters may be wrong
-    if (closest != known.end() && 3 * edit_distance(*closest, word) <= word.size()) {
+    if (const auto closest = closest_word(word, known)) {
       std::cerr << "triglyph: did you mean " << *closest << "?\n";
     }
     return;
@@ -102,6 +79,8 @@ std::unique_ptr<CLI::App> make_app(Action& action) {
   add_verify_verb(*app, action);
   add_measure_verb(*app, action);
   add_render_verb(*app, action);
+  add_attack_verb(*app, action);
+  add_survive_verb(*app, action);
   add_sample_verb(*app, action);
   add_ledger_verb(*app, action);
   add_keygen_verb(*app, action);

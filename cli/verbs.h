@@ -23,7 +23,8 @@ void add_verify_verb(CLI::App& app, Action& action);
 void add_measure_verb(CLI::App& app, Action& action);
 void add_render_verb(CLI::App& app, Action& action);
 void add_sample_verb(CLI::App& app, Action& action);
-void add_ledger_verb(CLI::App& app, Action& action);
+void add_attack_verb(CLI::App& app, Action& action);
+void add_survive_verb(CLI::App& app, Action& action);
 
 // Replaces the renderer's --threads by the options that render takes for a collection. Their values
 // go nowhere: this is for what is made from the declarations.

@@ -79,6 +79,10 @@ struct ReadItem final : FileItem {
   std::optional<FileReading> reading;
 };
 
+struct AttackItem final : FileItem {
+  AttackResult result;
+};
+
 struct VerifyItem final : FileItem {
   Record record;
   Verification verification;
@@ -105,6 +109,30 @@ void read_files(std::span<const fs::path> files, std::span<const Encoding> encod
       source, [&](ReadItem& item) { item.reading = read_file(item.file, encodings, keys); },
       [&](ReadItem& item) {
         on_result({item.file, std::move(item.reading), std::move(item.failure)});
+      },
+      context, stop);
+}
+
+void attack_files(std::span<const AttackJob> jobs, std::uint64_t seed, const RunContext& context,
+                  const std::function<void(const AttackResult&)>& on_result,
+                  const std::atomic<bool>& stop) {
+  auto job = jobs.begin();
+  const auto source = [&]() -> std::unique_ptr<AttackItem> {
+    if (job == jobs.end()) return nullptr;
+    auto item = std::make_unique<AttackItem>();
+    item->result.job = *job++;
+    item->file = item->result.job.mesh;
+    return item;
+  };
+  run_files<AttackItem>(
+      source,
+      [&](AttackItem& item) {
+        const auto& [mesh, out, attack] = item.result.job;
+        item.result.attacked = attack_file(mesh, out, attack, seed);
+      },
+      [&](AttackItem& item) {
+        item.result.failure = std::move(item.failure);
+        on_result(item.result);
       },
       context, stop);
 }

@@ -1,5 +1,5 @@
-// Runs that change no file: many files are read, verified or compared in parallel, within a memory
-// budget, and results come in order.
+// Runs that change no file: many files are read, verified, compared or attacked in parallel, within
+// a memory budget, and results come in order.
 #pragma once
 
 #include <atomic>
@@ -11,6 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/attack/attack_file.h"
 #include "engine/marking/read_file.h"
 #include "engine/marking/verify_file.h"
 #include "manifests/pairs.h"
@@ -38,6 +39,26 @@ void read_files(std::span<const std::filesystem::path> files, std::span<const En
                 std::span<const Key> keys, const RunContext& context,
                 const std::function<void(const ReadResult&)>& on_result,
                 const std::atomic<bool>& stop);
+
+// A mesh to attack, and the file to write.
+struct AttackJob {
+  std::filesystem::path mesh;
+  std::filesystem::path out;
+  Attack attack;
+};
+
+// The result of attacking one mesh: what was written or a failure.
+struct AttackResult {
+  AttackJob job;
+  std::optional<AttackedFile> attacked;
+  std::optional<FileFailure> failure;
+};
+
+// Attacks every mesh; see attack_file(). Calls `on_result` in the order of the jobs, one call at a
+// time.
+void attack_files(std::span<const AttackJob> jobs, std::uint64_t seed, const RunContext& context,
+                  const std::function<void(const AttackResult&)>& on_result,
+                  const std::atomic<bool>& stop);
 
 // Returns the next record of a run, or nothing at the end.
 using RecordSource = std::function<std::optional<Record>()>;

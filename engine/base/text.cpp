@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <vector>
 
 namespace triglyph {
 namespace {
@@ -26,6 +27,25 @@ std::size_t printable_prefix(std::string_view text) {
   // marks that change the direction of what follows can make a name look like another
   const bool turns = (code >= 0x202a && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
   return is_overlong || is_surrogate || is_control || turns || code > 0x10ffff ? 0 : size;
+}
+
+// Returns the least number of letters to insert, delete, replace or swap with a neighbour that turn
+// one word into the other (Damerau-Levenshtein, each place edited once). O(|a| |b|).
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::vector<std::size_t>> rows(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i) {
+    for (std::size_t j = 0; j <= b.size(); ++j) {
+      if (i == 0 || j == 0) {
+        rows[i][j] = i + j;
+        continue;
+      }
+      const std::size_t replaced = rows[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      rows[i][j] = std::min({rows[i - 1][j] + 1, rows[i][j - 1] + 1, replaced});
+      const bool swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
+      if (swapped) rows[i][j] = std::min(rows[i][j], rows[i - 2][j - 2] + 1);
+    }
+  }
+  return rows[a.size()][b.size()];
 }
 
 }  // namespace
@@ -56,6 +76,18 @@ std::string lower_case_ending(const std::filesystem::path& path) {
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return ending;
+}
+
+std::optional<std::string> closest_word(std::string_view word, std::span<const std::string> known) {
+  const std::string* closest = nullptr;
+  std::size_t least = word.size() / 3 + 1;  // a third of the letters may be wrong
+  for (const std::string& candidate : known) {
+    const std::size_t distance = edit_distance(candidate, word);
+    if (distance >= least) continue;
+    closest = &candidate;
+    least = distance;
+  }
+  return closest == nullptr ? std::nullopt : std::optional(*closest);
 }
 
 }  // namespace triglyph

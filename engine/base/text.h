@@ -1,7 +1,10 @@
-// Text of unknown origin: what can be shown of it, and the endings of file names.
+// Text of unknown origin: what can be shown of it, what was meant by it, and the endings of file
+// names.
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -16,5 +19,11 @@ namespace triglyph {
 
 // Returns the extension of a file's name in lower case: ".obj" for "A.OBJ".
 [[nodiscard]] std::string lower_case_ending(const std::filesystem::path& path);
+
+// Returns the word of a list that a mistyped one is closest to, or nothing if more than a third of
+// its letters would have to change: inserted, deleted, replaced or swapped with a neighbour
+// (Damerau-Levenshtein, each place edited once). Ties go to the first. O(letters^2 * words).
+[[nodiscard]] std::optional<std::string> closest_word(std::string_view word,
+                                                      std::span<const std::string> known);
 
 }  // namespace triglyph

@@ -82,6 +82,9 @@ class Halfedges {
   [[nodiscard]] std::uint32_t from(Halfedge halfedge) const { return to(opposite(halfedge)); }
   [[nodiscard]] std::uint32_t to(Halfedge halfedge) const { return point(to_vertex(halfedge)); }
 
+  // Returns the connectivity in OpenMesh's terms, for those who change a copy of it.
+  [[nodiscard]] const OpenMesh::TriConnectivity& kernel() const { return kernel_; }
+
   // Returns the vertex where the halfedge ends: a point, or a copy of one.
   [[nodiscard]] std::uint32_t to_vertex(Halfedge halfedge) const {
     return static_cast<std::uint32_t>(kernel_.to_vertex_handle(handle(halfedge)).idx());

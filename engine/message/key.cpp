@@ -69,10 +69,15 @@ std::string read_private_file(const std::filesystem::path& path) {
 }  // namespace
 
 Key Key::trial() {
+  return trial(0);
+}
+
+Key Key::trial(std::uint64_t number) {
   start_sodium();
+  std::string seed(kTrialSeed);
+  if (number > 0) seed += ' ' + std::to_string(number);
   Key key;
-  key.secret_ =
-      hash<kBytes>({reinterpret_cast<const std::uint8_t*>(kTrialSeed.data()), kTrialSeed.size()});
+  key.secret_ = hash<kBytes>({reinterpret_cast<const std::uint8_t*>(seed.data()), seed.size()});
   return key;
 }
 

@@ -34,6 +34,10 @@ class Key {
   // it.
   [[nodiscard]] static Key trial();
 
+  // Returns one of the public keys of trials that need several, the same on every machine. Number 0
+  // is trial() itself.
+  [[nodiscard]] static Key trial(std::uint64_t number);
+
   // Returns a new key from the system's random source.
   [[nodiscard]] static Key generate();
 

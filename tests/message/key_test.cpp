@@ -69,6 +69,13 @@ TEST(Key, StreamsDifferByUseAndByKeyAndExtendEachOther) {
 }
 
 // Every file ever marked with the trial key depends on these values.
+TEST(Key, TrialKeysDifferByNumberAndNumberZeroIsTheOneWithoutANumber) {
+  EXPECT_EQ(Key::trial(0).fingerprint(), Key::trial().fingerprint());
+  EXPECT_NE(Key::trial(1).fingerprint(), Key::trial(0).fingerprint());
+  EXPECT_NE(Key::trial(1).fingerprint(), Key::trial(2).fingerprint());
+  EXPECT_FALSE(Key::trial(1).is_trial());  // a mark made without a key is nobody else's
+}
+
 TEST(Key, TrialKeyNeverChanges) {
   EXPECT_TRUE(Key::trial().is_trial());
   EXPECT_FALSE(Key::generate().is_trial());

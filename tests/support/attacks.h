@@ -1,66 +1,31 @@
-// What happens to meshes on their way: each function returns a changed copy, deterministic by seed.
+// What happens to meshes on their way, as tests call it: the attacks of engine/attack, and some
+// that tests alone need. Each function returns a changed copy, deterministic by seed.
 #pragma once
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <numeric>
 #include <vector>
 
+#include "engine/attack/coordinates.h"
+#include "engine/attack/indexing.h"
+#include "engine/attack/motions.h"
+#include "engine/attack/stored_mesh.h"
 #include "engine/base/random.h"
-#include "engine/geometry/box.h"
 #include "engine/mesh/mesh.h"
 
 namespace triglyph::test {
 
-inline std::vector<std::uint32_t> random_order(std::size_t size, std::uint64_t seed) {
-  std::vector<std::uint32_t> order(size);
-  std::iota(order.begin(), order.end(), 0U);
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return random_bits(seed, 0, a) < random_bits(seed, 0, b);
-  });
-  return order;
-}
+using triglyph::as_float;
+using triglyph::quantised;
+using triglyph::random_rotation;
+using triglyph::transformed;
+using triglyph::with_significant_digits;
+using triglyph::with_uniform_noise;
 
 // New order of vertices and faces, and every face starts at another corner.
 inline Mesh shuffled(const Mesh& mesh, std::uint64_t seed) {
-  const auto points = random_order(mesh.positions.size(), seed);
-  const auto faces = random_order(mesh.triangles.size(), seed + 1);
-  std::vector<std::uint32_t> place(points.size());
-  Mesh result;
-  for (std::uint32_t i = 0; i < points.size(); ++i) {
-    place[points[i]] = i;
-    result.positions.push_back(mesh.positions[points[i]]);
-  }
-  for (const std::uint32_t face : faces) {
-    const Triangle& old = mesh.triangles[face];
-    const auto turn = static_cast<std::size_t>(random_bits(seed, 2, face) % 3);
-    result.triangles.push_back(
-        {place[old[turn]], place[old[(turn + 1) % 3]], place[old[(turn + 2) % 3]]});
-  }
-  return result;
-}
-
-// Rotation by a uniform random quaternion, as rows.
-inline std::array<Vec3, 3> random_rotation(std::uint64_t seed) {
-  std::array<double, 4> q{};
-  double norm = 0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    q[i] = random_unit(seed, 0, i) + random_unit(seed, 1, i) - 1;
-    norm += q[i] * q[i];
-  }
-  norm = std::sqrt(norm);
-  const double w = q[0] / norm, x = q[1] / norm, y = q[2] / norm, z = q[3] / norm;
-  return {Vec3(1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)),
-          Vec3(2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)),
-          Vec3(2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y))};
-}
-
-inline Vec3 transformed(const std::array<Vec3, 3>& rows, const Vec3& p) {
-  return Vec3(dot(rows[0], p), dot(rows[1], p), dot(rows[2], p));
+  return reordered(mesh, seed);
 }
 
 // Random rotation (uniform quaternion), scale from 1e-3 to 1e3, shift of up to ten mesh sizes.
@@ -120,59 +85,6 @@ inline Mesh cropped_half(const Mesh& mesh, std::uint64_t seed) {
     result.triangles.push_back(triangle);
   }
   return result;
-}
-
-// Every coordinate shifted by up to `intensity` times the mean distance of the points from their
-// centroid, uniformly. Wang, Lavoue, Denis, Baskurt, He. A benchmark for 3D mesh watermarking
-// (2010).
-inline Mesh with_uniform_noise(const Mesh& mesh, double intensity, std::uint64_t seed) {
-  Vec3 centroid(0, 0, 0);
-  for (const Vec3& p : mesh.positions) centroid += p / static_cast<double>(mesh.positions.size());
-  double radius = 0;
-  for (const Vec3& p : mesh.positions) radius += (p - centroid).norm();
-  radius /= static_cast<double>(mesh.positions.size());
-  Mesh result = mesh;
-  for (std::size_t i = 0; i < result.positions.size(); ++i) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      result.positions[i][axis] += (2 * random_unit(seed, axis, i) - 1) * intensity * radius;
-    }
-  }
-  return result;
-}
-
-// Coordinates rounded to multiples of 2^-bits of the box's side, an axis at a time: the same
-// benchmark.
-inline Mesh quantised(const Mesh& mesh, int bits) {
-  const auto [low, high] = bounding_box(mesh.positions);
-  Mesh result = mesh;
-  for (Vec3& p : result.positions) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double step = std::ldexp(high[axis] - low[axis], -bits);
-      if (step > 0) p[axis] = low[axis] + std::round((p[axis] - low[axis]) / step) * step;
-    }
-  }
-  return result;
-}
-
-// Coordinates as "%.{digits}g" would write them.
-inline Vec3 with_significant_digits(const Vec3& p, int digits) {
-  Vec3 result;
-  for (std::size_t i = 0; i < 3; ++i) {
-    char text[64];
-    std::snprintf(text, sizeof text, "%.*g", digits, p[i]);
-    result[i] = std::strtod(text, nullptr);
-  }
-  return result;
-}
-
-inline Mesh with_significant_digits(const Mesh& mesh, int digits) {
-  Mesh result = mesh;
-  for (Vec3& p : result.positions) p = with_significant_digits(p, digits);
-  return result;
-}
-
-inline Vec3 as_float(const Vec3& p) {
-  return Vec3(static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]));
 }
 
 }  // namespace triglyph::test

@@ -1,0 +1,74 @@
+#include "engine/survival/trial.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "engine/attack/stored_mesh.h"
+#include "engine/base/error.h"
+#include "engine/marking/extract.h"
+#include "engine/marking/mark.h"
+#include "engine/marking/refusal.h"
+#include "engine/message/votes.h"
+
+namespace triglyph {
+namespace {
+
+// The distance between neighbouring floats at the largest coordinate that occurs.
+double float_step(const Mesh& mesh) {
+  double most = 0;
+  for (const Vec3& p : mesh.positions) most = std::max(most, p.max_abs());
+  const auto largest = static_cast<float>(most);
+  return std::nextafter(largest, std::numeric_limits<float>::infinity()) - largest;
+}
+
+double wrong_share(std::span<const Reading> readings, const Message& message,
+                   const WordCode& code) {
+  Votes votes(code);
+  for (const Reading& reading : readings) votes.add(reading);
+  const std::vector<std::optional<std::uint32_t>> read = votes.parts();
+  const std::vector<Word> words = code.words_of(message);
+  const int bits = code.format().part_bits;
+  int wrong = 0;
+  for (const Word& word : words) {
+    const auto& part = read[code.part_index(word.subscript)];
+    wrong += part ? std::popcount(*part ^ word.part) : bits;
+  }
+  return wrong / (static_cast<double>(bits) * static_cast<double>(words.size()));
+}
+
+}  // namespace
+
+TrialMark mark_for_trial(const Mesh& mesh, const MarkRequest& request, const Key& key) {
+  if (request.is_fill()) {
+    throw Error(ErrorCode::Usage, {}, "", "fill carries no message that could survive");
+  }
+  const Halfedges halfedges = build_halfedges(mesh);
+  const double step = float_step(mesh);
+  Marking marking = mark({mesh, halfedges}, request.payload, key, request.options, as_float, step);
+  TrialMark result;
+  if (marking.status != MarkStatus::Marked) {
+    result.refusal = refusal(marking, request, step);
+    return result;
+  }
+  result.mesh = {std::move(marking.positions), mesh.triangles};
+  result.encoding = request.options.encoding();
+  result.encoding.format = marking.format;
+  result.message = request.message();
+  return result;
+}
+
+TrialReading read_for_trial(const Mesh& mesh, const TrialMark& mark, const Key& key) {
+  TrialReading result;
+  if (mesh.triangles.empty()) return result;  // nothing is left to be read
+  const Halfedges halfedges = build_halfedges(mesh);
+  const Extraction found = extract({mesh, halfedges}, mark.encoding, key);
+  result.is_recovered = found.message == mark.message;
+  result.wrong_bits =
+      wrong_share(found.readings, mark.message, WordCode(key, mark.encoding.format));
+  result.false_alarm = found.false_alarm;
+  return result;
+}
+
+}  // namespace triglyph
