@@ -9,6 +9,7 @@
 #include "cli/screen.h"
 #include "cli/verbs.h"
 #include "engine/base/text.h"
+#include "engine/flux/flux_mark.h"
 #include "manifests/file_runs.h"
 #include "manifests/inputs.h"
 #include "manifests/json_line.h"
@@ -39,9 +40,15 @@ void print_text(const std::filesystem::path& path, const FileReading& reading,
     return;
   }
   const FoundMark& mark = *reading.mark;
-  std::cout << shown(mark.message) << "  " << mark.encoding.scheme << ", " << mark.agreeing
-            << " units agree, " << mark.parts << " parts, false alarm 2^"
-            << power_of_two_above(reading.false_alarm);
+  std::cout << (mark.message.empty() ? shown(mark.flux->payload) : shown(mark.message)) << "  "
+            << mark.encoding.scheme << ", ";
+  if (mark.flux) {
+    std::cout << mark.flux->payload.bits << " bits";
+    if (!mark.flux->undone.empty()) std::cout << ", " << mark.flux->undone << " undone";
+  } else {
+    std::cout << mark.agreeing << " units agree, " << mark.parts << " parts";
+  }
+  std::cout << ", false alarm 2^" << power_of_two_above(reading.false_alarm);
   if (keys.size() > 1) std::cout << ", key " << keys[mark.key].fingerprint();
   std::cout << "\n";
 }
@@ -66,7 +73,14 @@ nlohmann::ordered_json json_of(const ReadResult& result, std::span<const Key> ke
   json["false_alarm_bound"] = reading.false_alarm;
   if (reading.mark) {
     const FoundMark& mark = *reading.mark;
-    json["message_hex"] = to_hex(mark.message);
+    if (!mark.message.empty()) json["message_hex"] = to_hex(mark.message);
+    if (mark.flux) {
+      json["payload_bits"] = mark.flux->payload.bits;
+      if (mark.flux->payload.content == FluxContent::Number) {
+        json["number"] = to_hex(bytes_of(mark.flux->payload));
+      }
+      json["undone"] = mark.flux->undone;
+    }
     json["scheme"] = mark.encoding.scheme;
     json["key"] = keys[mark.key].fingerprint();
     json["parts"] = mark.parts;

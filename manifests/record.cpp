@@ -1,5 +1,6 @@
 #include "manifests/record.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "engine/base/error.h"
@@ -62,6 +63,37 @@ std::vector<Carrier> units_in(const Json& json, std::uint32_t parts) {
   return carriers;
 }
 
+Json flux_of(const FluxMark& mark) {
+  return {{"content", mark.payload.content == FluxContent::Number ? "number" : "message"},
+          {"bits", mark.payload.bits},
+          {"value", to_hex(bytes_of(mark.payload))},
+          {"step", mark.step},
+          {"rms_percent", mark.rms_percent},
+          {"expected_evidence", mark.expected_evidence},
+          {"functionals", mark.functionals}};
+}
+
+FluxMark flux_in(const Json& json) {
+  FluxMark mark;
+  const auto content = json.at("content").get<std::string>();
+  if (content != "number" && content != "message") refuse("unknown content " + content);
+  mark.payload.content = content == "number" ? FluxContent::Number : FluxContent::Bytes;
+  mark.payload.bits = whole_number<std::uint8_t>(json.at("bits"));
+  const std::vector<std::uint8_t> bytes = from_hex(json.at("value").get<std::string>());
+  const auto known = std::find(kPayloadBits.begin(), kPayloadBits.end(), mark.payload.bits);
+  if (known == kPayloadBits.end() || 8 * bytes.size() != static_cast<std::size_t>(*known)) {
+    refuse("a flux layer that cannot be");
+  }
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    mark.payload.value |= std::uint64_t{bytes[i]} << (8 * i);
+  }
+  mark.step = json.value("step", 0.0);
+  mark.rms_percent = json.value("rms_percent", 0.0);
+  mark.expected_evidence = json.value("expected_evidence", 0.0);
+  mark.functionals = whole_number<std::uint32_t>(json, "functionals");
+  return mark;
+}
+
 Json run_of(const Record& record) {
   const StageTimes& times = record.file.times;
   return {{"load_s", times.load},
@@ -122,7 +154,7 @@ Json to_json(const Record& record) {
   Json json = {{"schema", kRecordSchema}};
   put_path(json, "mesh", file.mesh);
   put_path(json, "out", file.out);
-  json["scheme"] = request.options.scheme;
+  json["scheme"] = request.options.scheme_name();
   json["status"] = name_of(file.status);
   if (!file.error.empty()) json["error"] = file.error;
   json.update(Json{{"file_format", file.file_format},
@@ -151,6 +183,7 @@ Json to_json(const Record& record) {
                      {"displacement_max", file.displacement_max},
                      {"displacement_rms", file.displacement_rms}});
   }
+  if (file.flux) json["flux"] = flux_of(*file.flux);
   json.update(Json{{"input_hash", file.input_hash},
                    {"output_hash", file.output_hash},
                    {"key", file.key_fingerprint},
@@ -203,6 +236,7 @@ Record parse_record(const std::string& line) try {
   file.input_hash = json.value("input_hash", std::string());
   file.output_hash = json.at("output_hash").get<std::string>();
   file.key_fingerprint = json.at("key").get<std::string>();
+  if (json.contains("flux")) file.flux = flux_in(json.at("flux"));
   if (json.contains("units")) file.units = units_in(json.at("units"), file.parts);
   if (json.contains("run")) read_run(json.at("run"), record);
   return record;

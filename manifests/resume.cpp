@@ -80,7 +80,7 @@ void enter_record(Ledger& ledger, std::int64_t run, const Record& record) {
     if (!file.request.is_fill()) mark->message_hex = to_hex(file.request.message());
     mark->mesh = item.source;
     mark->out = item.target;
-    mark->scheme = file.request.options.scheme;
+    mark->scheme = file.request.options.scheme_name();
     mark->options = options_text(file.request.options);
     mark->key = file.key_fingerprint;
     mark->input_hash = file.input_hash;

@@ -13,15 +13,24 @@ namespace triglyph {
 
 // What the bits of a payload are.
 enum class FluxContent : std::uint8_t {
-  Message,  // the message itself
-  Number,   // a keyed hash of a message that is too long, or a number that an owner chose
+  Bytes,   // the message itself, its first byte in the lowest bits
+  Number,  // Key::number() of a message that does not fit, as many bits of it as do
 };
 
-inline constexpr std::array<FluxContent, 2> kFluxContents = {FluxContent::Message,
+inline constexpr std::array<FluxContent, 2> kFluxContents = {FluxContent::Bytes,
                                                              FluxContent::Number};
 
 // Sizes of payloads, in bits: a mark takes the largest that the mesh can hold.
 inline constexpr std::array<int, 4> kPayloadBits = {16, 24, 32, 64};
+
+// What a flux mark carries.
+struct FluxPayload {
+  std::uint64_t value = 0;
+  int bits = 0;  // one of kPayloadBits
+  FluxContent content = FluxContent::Bytes;
+
+  bool operator==(const FluxPayload&) const = default;
+};
 
 using FluxBits = std::array<std::uint8_t, kFunctionals>;
 

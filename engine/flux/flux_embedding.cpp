@@ -50,6 +50,10 @@ constexpr double kRingFollows = 0.6;
 constexpr double kUsualNoise = 0.003;
 constexpr int kUsualBits = 9;
 
+// What any mark must survive: a file format with few digits.
+constexpr double kLittleNoise = 0.001;
+constexpr int kLittleBits = 11;
+
 std::vector<Vec3> outward_directions(const Mesh& mesh) {
   std::vector<Vec3> normals(mesh.positions.size());
   for (const Triangle& t : mesh.triangles) {
@@ -132,7 +136,8 @@ FluxCanvas::FluxCanvas(const Surface& surface) : surface_(surface), closed_(surf
   derivatives_ = flux_derivatives(positions, closed_.triangles(), faces, directions_, frame_);
   frame_rows_ = frame_rows(positions, closed_.triangles(), faces, directions_, frame_);
   make_basis();
-  measure_noise();
+  usual_noise_ = noise_of(kUsualNoise, kUsualBits);
+  little_noise_ = noise_of(kLittleNoise, kLittleBits);
 }
 
 void FluxCanvas::make_basis() {
@@ -325,12 +330,13 @@ double FluxCanvas::squared_move(std::span<const Vec3> positions) const {
   return sum / total;
 }
 
-void FluxCanvas::measure_noise() {
+std::vector<std::vector<double>> FluxCanvas::noise_of(double amplitude, int bits) const {
   const std::vector<Vec3>& positions = surface_.mesh.positions;
-  const auto change_of = [&](const std::vector<Vec3>& disturbed) {
+  std::vector<std::vector<double>> changes;
+  const auto add_change = [&](const std::vector<Vec3>& disturbed) {
     std::vector<double> values = used_values(disturbed);
     for (std::size_t i = 0; i < values.size(); ++i) values[i] -= before_[used_[i]].value;
-    if (!values.empty()) noises_.push_back(std::move(values));
+    if (!values.empty()) changes.push_back(std::move(values));
   };
   double distance = 0;
   for (const Vec3& p : positions) distance += (p - frame_.centre).norm();
@@ -338,26 +344,30 @@ void FluxCanvas::measure_noise() {
   std::vector<Vec3> disturbed = positions;
   for (std::size_t i = 0; i < disturbed.size(); ++i) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      disturbed[i][axis] += kUsualNoise * distance * (2 * random_unit(1, axis, i) - 1);
+      disturbed[i][axis] += amplitude * distance * (2 * random_unit(1, axis, i) - 1);
     }
   }
-  change_of(disturbed);
+  add_change(disturbed);
   disturbed = positions;
-  const double cell = bounding_box(positions).size().max() / std::ldexp(1.0, kUsualBits);
+  const double cell = bounding_box(positions).size().max() / std::ldexp(1.0, bits);
   for (Vec3& p : disturbed) {
     for (std::size_t axis = 0; axis < 3; ++axis) p[axis] = std::round(p[axis] / cell) * cell;
   }
-  change_of(disturbed);
+  add_change(disturbed);
+  return changes;
 }
 
-double FluxCanvas::expected_evidence(std::size_t step) const {
-  double least = std::numeric_limits<double>::infinity();
-  for (const std::vector<double>& noise : noises_) {
-    double sum = 0;
-    for (const double change : noise) sum += std::cos(2 * M_PI * change / step_size(step));
-    least = std::min(least, cosine_evidence(sum, noise.size()));
-  }
-  return noises_.empty() ? 0 : least;
+FluxExpectation FluxCanvas::expected_evidence(std::size_t step) const {
+  const auto least = [&](const std::vector<std::vector<double>>& noises) {
+    double bits = noises.empty() ? 0 : std::numeric_limits<double>::infinity();
+    for (const std::vector<double>& noise : noises) {
+      double sum = 0;
+      for (const double change : noise) sum += std::cos(2 * M_PI * change / step_size(step));
+      bits = std::min(bits, cosine_evidence(sum, noise.size()));
+    }
+    return bits;
+  };
+  return {least(usual_noise_), least(little_noise_)};
 }
 
 std::optional<std::size_t> FluxCanvas::expected_step(const FluxLimits& limits) const {

@@ -18,16 +18,24 @@
 namespace triglyph {
 
 // What the shape of a mesh allows.
-enum class FluxObstacle {
+enum class FluxObstacle : std::uint8_t {
   None,
   NoVolume,    // the mesh encloses next to nothing: a flat sheet
   NoAxes,      // two principal axes are equal, as in a ball or a cube: octants have no place
   TooNarrow,   // the surface lies in too few shells and octants
-  TooVisible,  // no step at which a reader would find a mark moves the surface little enough
+  TooFaint,    // no mark that moves the surface little enough would be found
+  TooVisible,  // likewise, within limits that the user set
 };
 
 struct FluxLimits {
   double rms_percent = 0.07;  // the root mean square of the moves, of the surface's diagonal
+};
+
+// The evidence, in bits, that a mark leaves, before anything is paid for what a reader tries: the
+// least after noise and after quantisation.
+struct FluxExpectation {
+  double after_usual_noise = 0;   // 0.3 % of the mean distance to the centre, 9 bits
+  double after_little_noise = 0;  // 0.1 %, 11 bits
 };
 
 // A mesh prepared for marks of any payload and key: functionals, their derivatives, and the
@@ -55,9 +63,8 @@ class FluxCanvas {
   [[nodiscard]] std::optional<Written> write(const FluxBits& bits, const Dither& dither,
                                              const FluxLimits& limits);
 
-  // Returns the least evidence, in bits, that a mark of this step leaves after the usual noise and
-  // the usual quantisation, before anything is paid for what a reader tries.
-  [[nodiscard]] double expected_evidence(std::size_t step) const;
+  // Returns what a mark of this step is expected to prove.
+  [[nodiscard]] FluxExpectation expected_evidence(std::size_t step) const;
   // Returns the largest step within the limits on average over keys; nothing if there is none.
   [[nodiscard]] std::optional<std::size_t> expected_step(const FluxLimits& limits) const;
 
@@ -65,7 +72,8 @@ class FluxCanvas {
   struct Basis;
 
   void make_basis();
-  void measure_noise();
+  // Returns the changes under noise of some amplitude and under quantisation to so many bits.
+  [[nodiscard]] std::vector<std::vector<double>> noise_of(double amplitude, int bits) const;
   // Makes the neighbourhoods of faces that turned too far follow less; false if there are none.
   [[nodiscard]] bool follow_less(std::span<const Vec3> positions);
   [[nodiscard]] std::vector<double> changes(const FluxBits& bits, const Dither& dither,
@@ -88,7 +96,9 @@ class FluxCanvas {
   FluxDerivatives derivatives_;
   std::vector<std::array<double, kFrameRows>> frame_rows_;
   std::unique_ptr<Basis> basis_;
-  std::vector<std::vector<double>> noises_;  // changes of the used functionals under attacks
+  // changes of the used functionals under noise and quantisation, usual and little
+  std::vector<std::vector<double>> usual_noise_;
+  std::vector<std::vector<double>> little_noise_;
 };
 
 }  // namespace triglyph

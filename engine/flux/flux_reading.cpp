@@ -300,12 +300,12 @@ void for_guesses(const Surface& surface, const TryAll& try_all) {
 
 }  // namespace
 
-std::optional<FluxFound> read_flux(const Surface& surface, const Key& key) {
+std::optional<FluxFound> read_flux(const Surface& surface, const Key& key, FluxEffort effort) {
   const FluxReader reader(key);
   std::optional<FluxFound> found;
   for_guesses(surface, [&](std::span<const Guess> guesses) {
     found = reader.read(guesses);
-    return found.has_value();
+    return found.has_value() || effort == FluxEffort::AsItIs;
   });
   return found;
 }
@@ -316,7 +316,7 @@ FluxEvidence flux_evidence(const Surface& surface, const Key& key, const FluxBit
   for_guesses(surface, [&](std::span<const Guess> guesses) {
     FluxEvidence next = reader.evidence(guesses, word);
     if (next.evidence > best.evidence) best = std::move(next);
-    return false;
+    return best.evidence >= kBelieved;
   });
   return best;
 }

@@ -12,9 +12,7 @@ namespace triglyph {
 
 // A payload, and how it was found.
 struct FluxFound {
-  std::uint64_t payload = 0;
-  int bits = 0;  // of the payload
-  FluxContent content = FluxContent::Message;
+  FluxPayload payload;
   // Minus the binary logarithm of the probability that any unmarked mesh, or a mesh with the mark
   // of another key, gives a payload at least as likely: evidence less the price of everything
   // tried.
@@ -27,12 +25,19 @@ struct FluxFound {
 // Evidence, in bits, at which a payload is believed.
 inline constexpr double kBelieved = 32;
 
+// How much a reader tries. The price is that of everything in any case.
+enum class FluxEffort : std::uint8_t {
+  AsItIs,  // the surface as it is: takes one pass over the triangles
+  All,
+};
+
 // Returns the payload of a surface's flux mark. Tries what may have been done to it (nothing,
 // smoothing, curvature flow of several strengths), every order and sign of the axes and mirror
 // image, every step, size and content of the payload; each hypothesis pays for itself by its prior,
 // so that the probability of a false payload is 2^-kBelieved for the whole reading. O(triangles)
 // times about 80.
-[[nodiscard]] std::optional<FluxFound> read_flux(const Surface& surface, const Key& key);
+[[nodiscard]] std::optional<FluxFound> read_flux(const Surface& surface, const Key& key,
+                                                 FluxEffort effort = FluxEffort::All);
 
 // What speaks for a word that is known.
 struct FluxEvidence {

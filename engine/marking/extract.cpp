@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/flux/flux_mark.h"
 #include "engine/message/decode.h"
 #include "engine/scheme/registry.h"
 
@@ -61,6 +62,16 @@ bool has_repeated_words(std::span<const Reading> readings, const WordFormat& for
 }
 
 Extraction extract(const Surface& surface, const Encoding& encoding, const Key& key) {
+  if (encoding.scheme == kFluxScheme) {
+    Extraction result;
+    result.flux = read_flux(surface, key);
+    result.false_alarm = std::exp2(-kBelieved);
+    if (result.flux) {
+      result.message = message_in(result.flux->payload);
+      result.false_alarm = std::exp2(-result.flux->evidence);
+    }
+    return result;
+  }
   const WordCode code(key, encoding.format);
   const auto scheme = make_scheme(encoding.scheme, code, encoding.scheme_options);
   return extract(*scheme->bind(surface), code, doubtful_parts(encoding.scheme_options));

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/flux/flux_reading.h"
 #include "engine/marking/options.h"
 #include "engine/message/key.h"
 #include "engine/message/votes.h"
@@ -22,6 +23,9 @@ struct Extraction {
   double agreement = 0;            // least agreement of the votes over all parts, 0 to 1
   double false_alarm = 0;          // probability that an unmarked mesh yields a message
   std::vector<Reading> readings;   // all units with the marker, genuine or by chance
+  // The flux layer, read under the encoding "flux" alone; with it `message` may be missing, since a
+  // number stands for one.
+  std::optional<FluxFound> flux;
 };
 
 // Extracts with a scheme that is bound to the surface. `doubtful_parts` is as in decode().

@@ -38,6 +38,7 @@ std::optional<FileStatus> refused_status(MarkStatus status) {
     case MarkStatus::Marked:
       return std::nullopt;
     case MarkStatus::TooSmall:
+    case MarkStatus::NoFlux:
       return FileStatus::TooSmall;
     case MarkStatus::TooCoarse:
       return FileStatus::TooCoarse;
@@ -107,8 +108,16 @@ struct FileMarking::Work {
 // Reads the mark that was made from a surface that should carry it.
 ReadBack FileMarking::Work::read_from(const Surface& surface, const MarkedFile& wanted,
                                       const Key& key) const {
-  const Extraction found = extract(surface, wanted.encoding(), key);
   ReadBack read;
+  if (marking.flux) {
+    const auto flux = read_flux(surface, key, FluxEffort::AsItIs);
+    if (!flux || flux->payload != marking.flux->payload) return read;
+  }
+  if (marking.words.empty()) {  // the flux layer is all there is
+    read.is_the_mark = marking.flux.has_value();
+    return read;
+  }
+  const Extraction found = extract(surface, wanted.encoding(), key);
   read.embedded = carriers_read(marking.carriers, marking.words, found.readings);
   read.is_the_mark =
       wanted.request.is_fill()
@@ -171,6 +180,7 @@ void FileMarking::run_stage(double& seconds, const Stage& stage) noexcept {
 
 void FileMarking::describe(const Marking& marking) {
   result_.format = marking.format;
+  result_.flux = marking.flux;
   result_.parts = static_cast<std::uint32_t>(marking.words.size());
   result_.candidates = marking.candidates;
   result_.units_valid = marking.units_valid;

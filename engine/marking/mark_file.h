@@ -67,12 +67,13 @@ struct MarkedFile {
   std::uint64_t points = 0;    // distinct positions among them
   std::uint64_t faces = 0;     // faces of the file
   WordFormat format;           // of the words; fill chooses the subscript bits
-  std::uint32_t parts = 0;     // of the message
+  std::uint32_t parts = 0;     // of the message; 0: there is no layer of units
   std::uint32_t candidates = 0;
   std::uint32_t units_valid = 0;     // chosen by the layout
   std::uint32_t units_bound = 0;     // upper bound of the size of any layout
   std::uint32_t units_assigned = 0;  // given a word
   std::uint32_t units_embedded = 0;  // whose word was read back from the output
+  std::optional<FluxMark> flux;      // the flux layer
   double cost_max = 0;               // of the assignment, model units
   double cost_sum = 0;               // likewise
   double hausdorff = 0;              // symmetric, model units

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/flux/flux_mark.h"
 #include "engine/message/words.h"
 #include "engine/scheme/scheme.h"
 
@@ -17,6 +18,7 @@ enum class MarkStatus {
   TooCoarse,      // the numbers of the file are too far apart for the quantiser cells
   AlreadyMarked,  // the mesh carries a mark of this key already, see Marking::found
   TooVisible,     // some part has no unit that can carry it within MarkOptions::max_move_percent
+  NoFlux,         // the shape carries no flux mark, see Marking::flux_obstacle
 };
 
 // A unit that carries a word after rounding and settling.
@@ -39,8 +41,9 @@ struct WayOut {
 
 // A mark that a mesh carries.
 struct FoundMessage {
-  Message message;
+  Message message;             // empty: see flux
   std::uint32_t agreeing = 0;  // units whose word is exactly that of the message
+  std::optional<FluxFound> flux;
 };
 
 struct Marking {
@@ -61,6 +64,8 @@ struct Marking {
   double assign_seconds = 0;          // step 2: costs and assignment, all rounds
   std::optional<FoundMessage> found;  // only of a mesh that is already marked
   WayOut way_out;                     // unless marked
+  std::optional<FluxMark> flux;       // the flux layer
+  FluxObstacle flux_obstacle = FluxObstacle::None;  // why there is none, if it was wanted
 };
 
 // Returns the nearest point that the output can represent.

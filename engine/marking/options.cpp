@@ -19,9 +19,29 @@ constexpr std::array<std::string_view, 3> kMessageKeys = {"message", "message_he
 constexpr double kMostSeconds = 86400;
 constexpr double kMostSeed = 9007199254740992.0;  // 2^53
 
+// by Strength
+constexpr std::array<std::string_view, 3> kStrengthNames = {"light", "normal", "strong"};
+
+constexpr std::string_view kAuto = "auto";
+constexpr std::string_view kFluxPlus = "flux+";
+
+// The scheme of the units of "auto", and of marks without a layer of units, whose options say
+// nothing.
+constexpr std::string_view kUsualUnits = "tsq";
+
 OptionSpec scheme_spec() {
-  return {"scheme", OptionKind::Choice, "", {}, {scheme_names().begin(), scheme_names().end()},
-          "tsq",    "Embedding scheme"};
+  std::vector<std::string> names = {std::string(kAuto), std::string(kFluxScheme)};
+  for (const std::string_view scheme : scheme_names()) names.emplace_back(scheme);
+  for (const std::string_view scheme : scheme_names()) {
+    names.push_back(std::string(kFluxPlus) += scheme);
+  }
+  return {"scheme",
+          OptionKind::Choice,
+          "",
+          {},
+          names,
+          Encoding{}.scheme,
+          "Embedding scheme, or two in layers; auto: flux and tsq, what the mesh can carry"};
 }
 
 std::vector<OptionSpec> message_specs() {
@@ -68,6 +88,10 @@ OptionTable<Options> make_table() {
           "subscript_bits", &WordFormat::subscript_bits, {1, 16},
           "Subscript bits in a unit, s; with --fill, as few as number all units unless given"),
       bits_option("part_bits", &WordFormat::part_bits, {2, 32}, "Message bits in a unit, w"),
+      choice_option<Options>("strength", &Options::strength, strength_names(), "normal",
+                             "How much the mark may change the mesh, and survives"),
+      number_option<Options>("max_visibility", &Options::max_visibility, {0, 1}, "MSDM2", "0",
+                             "Visibility that the flux layer keeps within; 0: by strength alone"),
       of_layout(choice_option<Layout>("layout", &Layout::method, layout_names(), "the scheme's",
                                       "Method that chooses the units; first-fit is un-optimised")),
       of_layout(count_option<Layout>("layout_iterations", &Layout::iterations, {1, 1e9}, "", "64",
@@ -128,8 +152,10 @@ std::vector<OptionSpec> scheme_specs() {
   return specs;
 }
 
-bool has_option(std::string_view scheme, std::string_view key) {
-  const auto& options = scheme_info(scheme).options;
+bool has_option(std::string_view name, std::string_view key) {
+  const Layers layers = layers_named(name);
+  if (layers.units == LayerUse::No) return false;
+  const auto& options = scheme_info(layers.scheme).options;
   return std::any_of(options.begin(), options.end(),
                      [&](const OptionSpec& spec) { return spec.key == key; });
 }
@@ -148,8 +174,8 @@ void apply_scheme_options(const OptionValues& values, MarkOptions& options) {
   }
 }
 
-MarkOptions resolved_options(const OptionValues& values, std::string_view scheme, bool fill) {
-  MarkOptions options = default_mark_options(scheme, fill);
+MarkOptions resolved_options(const OptionValues& values, std::string_view name, bool fill) {
+  MarkOptions options = default_mark_options(name, fill);
   apply_options(table(), values, options);
   apply_scheme_options(values, options);
   validate(options.format);
@@ -170,10 +196,34 @@ std::string_view name_of(AssignMethod method) {
   return kAssignNames.at(static_cast<std::size_t>(method));
 }
 
-MarkOptions default_mark_options(std::string_view scheme, bool fill) {
-  const SchemeDefaults defaults = scheme_info(scheme).defaults(fill);
+std::span<const std::string_view> strength_names() {
+  return kStrengthNames;
+}
+
+Layers layers_named(std::string_view name) {
+  if (name == kAuto) {
+    return {LayerUse::IfPossible, LayerUse::IfPossible, std::string(kUsualUnits)};
+  }
+  if (name == kFluxScheme) return {LayerUse::Yes, LayerUse::No, std::string(kUsualUnits)};
+  if (name.starts_with(kFluxPlus)) {
+    return {LayerUse::Yes, LayerUse::Yes, std::string(name.substr(kFluxPlus.size()))};
+  }
+  return {LayerUse::No, LayerUse::Yes, std::string(name)};
+}
+
+std::string MarkOptions::scheme_name() const {
+  if (flux == LayerUse::No) return scheme;
+  if (flux == LayerUse::IfPossible) return std::string(kAuto);
+  return units == LayerUse::No ? std::string(kFluxScheme) : std::string(kFluxPlus) + scheme;
+}
+
+MarkOptions default_mark_options(std::string_view name, bool fill) {
+  const Layers layers = layers_named(name);
+  const SchemeDefaults defaults = scheme_info(layers.scheme).defaults(fill);
   MarkOptions options;
-  options.scheme = scheme;
+  options.scheme = layers.scheme;
+  options.units = layers.units;
+  options.flux = layers.flux;
   options.format = defaults.format;
   options.scheme_options = defaults.options;
   if (defaults.has_few_units && !fill) {
@@ -269,22 +319,38 @@ MarkRequest resolve(const OptionValues& values) {
     throw Error(ErrorCode::Usage, {}, "", "no message: give --message, --message-hex or --fill");
   }
   request.options = resolved_options(values, scheme_of(values), request.is_fill());
-  if (!request.is_fill()) check_message(request.options.format, request.message().size());
+  if (request.is_fill() && request.options.flux == LayerUse::Yes) {
+    throw Error(ErrorCode::Usage, {}, "",
+                "the flux layer carries a message or its number: --fill needs a scheme of units");
+  }
+  if (request.is_fill()) request.options.flux = LayerUse::No;
+  if (!request.is_fill()) {
+    const bool has_units = request.options.units == LayerUse::Yes;
+    // what units cannot hold is carried by the flux layer as its number
+    const WordFormat widest{0, 16, 32};
+    check_message(has_units ? request.options.format : widest, request.message().size());
+  }
   return request;
 }
 
 std::vector<Encoding> encodings_of(const OptionValues& values) {
+  const bool is_named = values.contains("scheme");
+  const Layers named = layers_named(is_named ? scheme_of(values) : kAuto);
   std::vector<Encoding> encodings;
   for (const std::string_view scheme : scheme_names()) {
-    if (values.contains("scheme") && scheme_of(values) != scheme) continue;
-    encodings.push_back(resolved_options(values, scheme, false).encoding());
+    const bool is_wanted = !is_named || (named.units != LayerUse::No && named.scheme == scheme);
+    if (is_wanted) encodings.push_back(resolved_options(values, scheme, false).encoding());
+    // after the scheme that is the quickest to read
+    const bool is_place = scheme == scheme_names().front();
+    if (is_place && named.flux != LayerUse::No)
+      encodings.push_back({std::string(kFluxScheme), {}, {}});
   }
   return encodings;
 }
 
 OptionValues values_of(const MarkOptions& options) {
   OptionValues values = option_values(table(), options);
-  values.emplace("scheme", options.scheme);
+  values.emplace("scheme", options.scheme_name());
   for (const auto& [key, value] : options.scheme_options) values.emplace(key, value);
   return values;
 }

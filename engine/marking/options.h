@@ -28,7 +28,11 @@ enum class AssignMethod {
 [[nodiscard]] std::string_view name_of(AssignMethod method);
 
 // How a mark is encoded in a mesh: all that a reader must know besides the key.
+// The encoding of the flux layer by name.
+inline constexpr std::string_view kFluxScheme = "flux";
+
 struct Encoding {
+  // of units, or "flux", which has no format and no options
   std::string scheme = "tsq";
   WordFormat format;
   OptionValues scheme_options;  // all options of the scheme
@@ -36,8 +40,35 @@ struct Encoding {
   bool operator==(const Encoding&) const = default;
 };
 
+// Whether a mark has a layer.
+enum class LayerUse : std::uint8_t {
+  No,
+  Yes,         // a mesh that cannot carry it is refused
+  IfPossible,  // a mesh that can carry any layer is marked
+};
+
+// The layers of a mark by the name of its scheme: "tsq", "flux", "flux+tsq", or "auto", which is
+// flux and tsq where they are possible.
+struct Layers {
+  LayerUse flux = LayerUse::No;
+  LayerUse units = LayerUse::Yes;
+  std::string scheme = "tsq";  // of the units
+};
+[[nodiscard]] Layers layers_named(std::string_view name);
+
+// How much a mark may change a mesh, and how much it survives.
+enum class Strength : std::uint8_t { Light, Normal, Strong };
+
+// Returns the names by Strength: "light", "normal", "strong".
+[[nodiscard]] std::span<const std::string_view> strength_names();
+
 struct MarkOptions {
-  std::string scheme = "tsq";
+  std::string scheme = "tsq";  // of the layer of units
+  LayerUse units = LayerUse::Yes;
+  LayerUse flux = LayerUse::No;
+  Strength strength = Strength::Normal;
+  // The flux layer moves the surface less where MSDM2 would exceed this; 0: no limit.
+  double max_visibility = 0;
   WordFormat format;
   OptionValues scheme_options;
   ConflictRule conflict_rule = ConflictRule::ReadWrite;
@@ -63,11 +94,13 @@ struct MarkOptions {
   bool detail = false;  // reports every unit, so that verification can locate damage
 
   [[nodiscard]] Encoding encoding() const { return {scheme, format, scheme_options}; }
+  // Returns the name of the scheme with its layers, the inverse of layers_named().
+  [[nodiscard]] std::string scheme_name() const;
   bool operator==(const MarkOptions&) const = default;
 };
 
-// Returns the default options of a scheme for a message, or for fill. Throws Error Usage for an
-// unknown scheme.
+// Returns the default options of a scheme, by its name with layers, for a message, or for fill,
+// which has no flux layer. Throws Error Usage for an unknown scheme.
 [[nodiscard]] MarkOptions default_mark_options(std::string_view scheme, bool fill);
 
 // Returns all options of marking in the order of help and records: the payload ("message",

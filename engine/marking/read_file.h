@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/flux/flux_reading.h"
 #include "engine/marking/options.h"
 #include "engine/message/key.h"
 
@@ -15,12 +16,13 @@ namespace triglyph {
 
 // A message, and how it was found.
 struct FoundMark {
-  Message message;
+  Message message;  // empty: the flux layer holds a number, which stands for a message
   Encoding encoding;
-  std::size_t key = 0;         // index of its key
-  std::uint32_t parts = 0;     // of the message
-  std::uint32_t agreeing = 0;  // units whose word is exactly that of the message
-  double agreement = 0;        // least agreement of the votes over all parts, 0 to 1
+  std::size_t key = 0;            // index of its key
+  std::uint32_t parts = 0;        // of the message
+  std::uint32_t agreeing = 0;     // units whose word is exactly that of the message
+  double agreement = 0;           // least agreement of the votes over all parts, 0 to 1
+  std::optional<FluxFound> flux;  // the flux layer, if it answered
 };
 
 struct FileReading {
@@ -29,8 +31,8 @@ struct FileReading {
   std::uint64_t faces = 0;
   std::uint32_t units_with_marker = 0;  // in the attempt that found the mark, else the most of any
   // Upper bound of the probability that an unmarked mesh yields a message in any of the attempts
-  // made, the sum over them: 2^-32 for an attempt with tsq or aie, 2^-22 with iie, which tries 2^10
-  // messages.
+  // made, the sum over them: 2^-32 for an attempt with tsq, aie or flux, 2^-22 with iie, which
+  // tries 2^10 messages. What the flux layer found counts with what it proves.
   double false_alarm = 0;
 };
 

@@ -17,6 +17,10 @@ std::string count_of(std::size_t count, const std::string& noun) {
 }
 
 std::string carries_mark(const FoundMessage& found) {
+  if (found.flux) {
+    return "carries " + shown(found.flux->payload) +
+           " in its flux layer under this key already; --remark marks it again";
+  }
   return "carries " + shown(found.message) + " under this key already (" +
          count_of(found.agreeing, "unit") + (found.agreeing == 1 ? " agrees" : " agree") +
          "); --remark marks it again";
@@ -67,6 +71,32 @@ std::string too_visible(const WayOut& way_out) {
          " % of the diagonal; --max-move " + to_text(way_out.max_move_percent) + " would do";
 }
 
+// Says why the flux layer is not possible, and what is.
+std::string no_flux(FluxObstacle obstacle) {
+  const std::string otherwise = "; --scheme tsq reads single triangles instead";
+  switch (obstacle) {
+    case FluxObstacle::NoVolume:
+      return "the mesh encloses no volume, which a flux mark needs" + otherwise;
+    case FluxObstacle::NoAxes:
+      return "two principal axes of the mesh are equal, as in a ball or a cube, so that a reader "
+             "of "
+             "flux would not know which is which" +
+             otherwise;
+    case FluxObstacle::TooNarrow:
+      return "the surface lies at too few distances from its centre for a flux mark" + otherwise;
+    case FluxObstacle::TooFaint:
+      return "a flux mark this faint would not be found again: the mesh is too coarse, or needs "
+             "--strength strong" +
+             otherwise;
+    case FluxObstacle::TooVisible:
+      return "a flux mark within the limits of moves and visibility would not be found again" +
+             otherwise;
+    case FluxObstacle::None:
+      break;
+  }
+  return "the message is too long for units, and the mesh carries no flux mark";
+}
+
 std::string too_coarse(const WayOut& way_out, double number_step) {
   const std::string wider =
       way_out.step > 0 ? ", or mark it with --step " + to_text(way_out.step) : "";
@@ -94,6 +124,8 @@ std::string refusal(const Marking& marking, const MarkRequest& request, double n
       return too_visible(marking.way_out);
     case MarkStatus::TooCoarse:
       return too_coarse(marking.way_out, number_step);
+    case MarkStatus::NoFlux:
+      return no_flux(marking.flux_obstacle);
     case MarkStatus::Marked:
       break;
   }

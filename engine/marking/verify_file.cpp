@@ -66,6 +66,29 @@ std::optional<Damage> damage_of(const MarkedFile& marked, const Readable& readab
   return damage;
 }
 
+// Says whether the surface carries the flux layer that was written; a word that is known needs less
+// evidence than one that is read.
+bool carries(const FluxMark& mark, const Surface& surface, const Key& key) {
+  const BlockCode code(key, mark.payload.content, mark.payload.bits);
+  return flux_evidence(surface, key, code.encode(mark.payload.value)).evidence >= kBelieved;
+}
+
+// Fills in the verdict and its reason.
+void judge(const Readable& readable, const MarkedFile& marked, const Key& key, bool carries_mark,
+           Verification& result) {
+  if (!carries_mark) {
+    result.verdict = FileVerdict::Lost;
+    result.detail = marked.key_fingerprint == key.fingerprint()
+                        ? "the message is not in the file"
+                        : "marked under another key, " + marked.key_fingerprint;
+  } else if (content_hash(readable.file.bytes()) != marked.output_hash) {
+    result.verdict = FileVerdict::Altered;
+    result.detail = "the bytes differ from those written";
+  } else {
+    result.verdict = FileVerdict::Intact;
+  }
+}
+
 }  // namespace
 
 std::string_view name_of(FileVerdict verdict) {
@@ -99,6 +122,12 @@ Verification verify_file(const MarkedFile& marked, const Key& key, bool locate) 
   }
   try {
     const Readable readable(marked.out);
+    const bool right_key = marked.key_fingerprint == key.fingerprint();
+    const bool carries_flux = marked.flux && carries(*marked.flux, readable.surface(), key);
+    if (marked.parts == 0) {
+      judge(readable, marked, key, carries_flux, result);
+      return result;
+    }
     const Encoding encoding = marked.encoding();
     const WordCode code(key, encoding.format);
     const auto scheme = make_scheme(encoding.scheme, code, encoding.scheme_options);
@@ -108,9 +137,8 @@ Verification verify_file(const MarkedFile& marked, const Key& key, bool locate) 
     const std::vector<Word> words =
         request.is_fill() ? code.fill_words(marked.parts) : code.words_of(request.message());
     result.units_found = count_words(code, words, found.readings);
-    const bool carries = request.is_fill() ? 2 * result.units_found > marked.units_embedded
-                                           : found.message == request.message();
-    const bool right_key = marked.key_fingerprint == key.fingerprint();
+    const bool carries_units = request.is_fill() ? 2 * result.units_found > marked.units_embedded
+                                                 : found.message == request.message();
     if (right_key) {
       result.damage =
           damage_of(marked, readable, *bound, words, found.readings, result.units_found, locate);
@@ -118,15 +146,10 @@ Verification verify_file(const MarkedFile& marked, const Key& key, bool locate) 
     if (result.damage) {
       result.units_found = result.damage->units_expected - result.damage->units_damaged;
     }
-    if (!carries) {
-      result.verdict = FileVerdict::Lost;
-      result.detail = right_key ? "the message is not in the file"
-                                : "marked under another key, " + marked.key_fingerprint;
-    } else if (content_hash(readable.file.bytes()) != marked.output_hash) {
-      result.verdict = FileVerdict::Altered;
-      result.detail = "the bytes differ from those written";
-    } else {
-      result.verdict = FileVerdict::Intact;
+    judge(readable, marked, key, carries_units || carries_flux, result);
+    if (carries_units != carries_flux && marked.flux) {
+      result.detail += std::string(result.detail.empty() ? "" : "; ") + "only the " +
+                       (carries_flux ? "flux layer" : "layer of units") + " can be read";
     }
   } catch (const Error& error) {
     result.verdict = FileVerdict::Damaged;

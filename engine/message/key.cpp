@@ -149,6 +149,13 @@ std::uint32_t Key::tag(std::span<const std::uint8_t> message) const {
          std::uint32_t{digest[3]} << 24;
 }
 
+std::uint64_t Key::number(std::span<const std::uint8_t> message) const {
+  const auto digest = hash<crypto_generichash_BYTES_MIN>(message, derive(KeyUse::FluxNumber));
+  std::uint64_t number = 0;
+  for (std::size_t i = 0; i < sizeof(number); ++i) number |= std::uint64_t{digest[i]} << (8 * i);
+  return number;
+}
+
 std::string Key::fingerprint() const {
   return to_hex(derive(KeyUse::Fingerprint)).substr(0, 16);
 }

@@ -61,6 +61,10 @@ class Key {
   // probability 2^-32.
   [[nodiscard]] std::uint32_t tag(std::span<const std::uint8_t> message) const;
 
+  // Returns a keyed 64-bit number of a message (BLAKE2b), by which an owner who keeps the messages
+  // recognises it. Independent of the tag.
+  [[nodiscard]] std::uint64_t number(std::span<const std::uint8_t> message) const;
+
   // Returns 16 hexadecimal digits that identify the key in records without revealing it.
   [[nodiscard]] std::string fingerprint() const;
 

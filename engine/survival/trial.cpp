@@ -38,6 +38,12 @@ double wrong_share(std::span<const Reading> readings, const Message& message,
   return wrong / (static_cast<double>(bits) * static_cast<double>(words.size()));
 }
 
+// A payload of another kind has no bit that is right.
+double wrong_share(const FluxPayload& found, const FluxPayload& hidden) {
+  if (found.bits != hidden.bits || found.content != hidden.content) return 1;
+  return std::popcount(found.value ^ hidden.value) / static_cast<double>(hidden.bits);
+}
+
 }  // namespace
 
 TrialMark mark_for_trial(const Mesh& mesh, const MarkRequest& request, const Key& key) {
@@ -56,6 +62,8 @@ TrialMark mark_for_trial(const Mesh& mesh, const MarkRequest& request, const Key
   result.encoding = request.options.encoding();
   result.encoding.format = marking.format;
   result.message = request.message();
+  result.flux = marking.flux;
+  result.has_units = !marking.words.empty();
   return result;
 }
 
@@ -63,6 +71,15 @@ TrialReading read_for_trial(const Mesh& mesh, const TrialMark& mark, const Key& 
   TrialReading result;
   if (mesh.triangles.empty()) return result;  // nothing is left to be read
   const Halfedges halfedges = build_halfedges(mesh);
+  if (mark.flux) {
+    if (const auto flux = read_flux({mesh, halfedges}, key)) {
+      result.is_recovered = flux->payload == mark.flux->payload;
+      result.wrong_bits = wrong_share(flux->payload, mark.flux->payload);
+      result.false_alarm = std::exp2(-flux->evidence);
+      if (result.is_recovered) return result;
+    }
+  }
+  if (!mark.has_units) return result;
   const Extraction found = extract({mesh, halfedges}, mark.encoding, key);
   result.is_recovered = found.message == mark.message;
   result.wrong_bits =

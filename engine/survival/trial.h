@@ -2,8 +2,10 @@
 // of survival knows of marking.
 #pragma once
 
+#include <optional>
 #include <string>
 
+#include "engine/flux/flux_mark.h"
 #include "engine/marking/options.h"
 #include "engine/mesh/mesh.h"
 #include "engine/message/key.h"
@@ -14,8 +16,10 @@ namespace triglyph {
 struct TrialMark {
   std::string refusal;  // why the mesh is not marked; empty: it is
   Mesh mesh;
-  Encoding encoding;
+  Encoding encoding;  // of the layer of units
   Message message;
+  std::optional<FluxMark> flux;  // the flux layer
+  bool has_units = true;
 
   [[nodiscard]] bool is_marked() const { return refusal.empty(); }
 };
