@@ -34,6 +34,7 @@ Mesh cropped(const Mesh& mesh, double share_removed, std::uint64_t seed) {
   order.resize(static_cast<std::size_t>(kept));
   std::sort(order.begin(), order.end());
   std::vector<Triangle> triangles;
+  triangles.reserve(order.size());
   for (const std::uint32_t t : order) triangles.push_back(mesh.triangles[t]);
   return compacted(mesh.positions, triangles);
 }
