@@ -62,8 +62,6 @@ Marking with_units(const MarkTask& task, Marking flux_alone) {
   const Mesh mesh{flux_alone.positions, task.surface.mesh.triangles};
   const MarkTask moved{
       {mesh, task.surface.halfedges}, task.payload, task.key, options, task.numbers};
-  const bool fits = fits_units(options.format, std::get<Message>(task.payload).size());
-  if (options.units == LayerUse::IfPossible && !fits) return flux_alone;
   MarkStages stages(moved);
   mark_units(moved, stages, options.units == LayerUse::Yes);
   Marking& marking = stages.marking();
@@ -80,8 +78,7 @@ Marking mark(const Surface& surface, const Payload& payload, const Key& key,
              const MarkOptions& options, const Rounding& rounding, double number_step) {
   validate(options.format);
   const auto* message = std::get_if<Message>(&payload);
-  const bool needs_units = options.units == LayerUse::Yes || options.flux == LayerUse::No;
-  if (message != nullptr && needs_units) check_message(options.format, message->size());
+  if (message != nullptr) check_message(options.format, message->size());
   const MarkTask task{surface, payload, key, options, {rounding, number_step}};
   MarkStages stages(task);
   if (message != nullptr && !options.remark) {
@@ -105,8 +102,7 @@ Marking mark(const Surface& surface, const Payload& payload, const Key& key,
   }
   Marking& marking = stages.marking();
   marking.flux_obstacle = obstacle;
-  const bool fits = message == nullptr || fits_units(options.format, message->size());
-  if ((obstacle != FluxObstacle::None && options.flux == LayerUse::Yes) || !fits) {
+  if (obstacle != FluxObstacle::None && options.flux == LayerUse::Yes) {
     marking.status = MarkStatus::NoFlux;
     return std::move(marking);
   }

@@ -298,7 +298,7 @@ void check_contradictions(const OptionValues& values, std::string_view scheme) {
 
 std::string scheme_of(const OptionValues& values) {
   const auto found = values.find("scheme");
-  return found == values.end() ? Encoding{}.scheme
+  return found == values.end() ? std::string(kAuto)
                                : std::get<std::string>(scheme_spec().checked(found->second));
 }
 
@@ -324,12 +324,7 @@ MarkRequest resolve(const OptionValues& values) {
                 "the flux layer carries a message or its number: --fill needs a scheme of units");
   }
   if (request.is_fill()) request.options.flux = LayerUse::No;
-  if (!request.is_fill()) {
-    const bool has_units = request.options.units == LayerUse::Yes;
-    // what units cannot hold is carried by the flux layer as its number
-    const WordFormat widest{0, 16, 32};
-    check_message(has_units ? request.options.format : widest, request.message().size());
-  }
+  if (!request.is_fill()) check_message(request.options.format, request.message().size());
   return request;
 }
 

@@ -94,7 +94,7 @@ std::string no_flux(FluxObstacle obstacle) {
     case FluxObstacle::None:
       break;
   }
-  return "the message is too long for units, and the mesh carries no flux mark";
+  return "the mesh carries no flux mark";
 }
 
 std::string too_coarse(const WayOut& way_out, double number_step) {

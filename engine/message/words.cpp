@@ -69,19 +69,14 @@ std::uint32_t parts_for(const WordFormat& format, std::size_t message_bytes) {
   return static_cast<std::uint32_t>((bits + part_bits - 1) / part_bits);
 }
 
-bool fits_units(const WordFormat& format, std::size_t message_bytes) {
-  return message_bytes >= kMinMessageBytes && message_bytes <= kMaxMessageBytes &&
-         parts_for(format, message_bytes) <= 1U << format.subscript_bits;
-}
-
 void check_message(const WordFormat& format, std::size_t message_bytes) {
   if (message_bytes < kMinMessageBytes || message_bytes > kMaxMessageBytes) {
     throw Error(ErrorCode::Usage, {}, "",
                 "a message has 1 to 256 bytes, not " + std::to_string(message_bytes));
   }
-  if (!fits_units(format, message_bytes)) {
-    const std::uint32_t parts = parts_for(format, message_bytes);
-    const std::uint32_t most = 1U << format.subscript_bits;
+  const std::uint32_t parts = parts_for(format, message_bytes);
+  const std::uint32_t most = 1U << format.subscript_bits;
+  if (parts > most) {
     throw Error(ErrorCode::Usage, {}, "",
                 "the message needs " + std::to_string(parts) + " parts, but " +
                     std::to_string(format.subscript_bits) + " subscript bits number only " +

@@ -39,9 +39,6 @@ void validate(const WordFormat& format);
 // Precondition: the format is valid.
 void check_message(const WordFormat& format, std::size_t message_bytes);
 
-// Says whether check_message() would accept a message of so many bytes.
-[[nodiscard]] bool fits_units(const WordFormat& format, std::size_t message_bytes);
-
 // One watermark word as it is embedded, without the marker, which all words share.
 struct Word {
   std::uint32_t subscript = 0;

@@ -453,7 +453,7 @@ TEST_F(CliRun, AnOutputIsNotMarkedAgainInAnotherScheme) {
   const RunResult refused = run(again);
   EXPECT_EQ(refused.code, 3);
   EXPECT_EQ(lines(refused.out)[0]["status"], "already marked");
-  EXPECT_NE(refused.err.find("\"m\" in scheme tsq; --remark"), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find("\"m\" in scheme auto; --remark"), std::string::npos) << refused.err;
   ASSERT_EQ(run("keygen --out k").code, 0);
   EXPECT_EQ(run(again + " --key-file k").code, 0);  // another owner knows nothing of it
   EXPECT_EQ(run(again + " --remark --force").code, 0);

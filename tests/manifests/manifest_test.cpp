@@ -141,7 +141,7 @@ TEST(Manifest, RefusesValuesThatCannotBe) {
   refuses("\"message\": \"a\", \"fill\": true", "exclude each other");
   refuses("\"message\": \"a\", \"message_hex\": \"00\"", "exclude each other");
   refuses("\"message\": \"\"", "1 to 256 bytes");
-  refuses("\"radius_edges\": 4", "no option of scheme tsq");
+  refuses("\"radius_edges\": 4", "no option of scheme auto");
   refuses("\"scheme\": \"iie\", \"step\": 0.5", "\"step\"");
   refuses("\"subscript_bits\": 2", "subscript bits");
   refuses("\"detail\": 1", "\"detail\" must be true or false");

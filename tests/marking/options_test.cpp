@@ -90,13 +90,17 @@ TEST(MarkOptions, OptionsOfAnotherSchemeContradictTheSchemeInUse) {
 
 TEST(MarkOptions, AReaderThatIsToldNothingTriesEveryScheme) {
   const std::vector<Encoding> all = encodings_of({});
-  ASSERT_EQ(all.size(), scheme_names().size());
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    EXPECT_EQ(all[i], default_mark_options(scheme_names()[i], false).encoding());
+  // flux comes after the scheme that is the quickest to read
+  ASSERT_EQ(all.size(), scheme_names().size() + 1);
+  EXPECT_EQ(all[1].scheme, kFluxScheme);
+  for (std::size_t i = 0; i < scheme_names().size(); ++i) {
+    EXPECT_EQ(all[i == 0 ? 0 : i + 1], default_mark_options(scheme_names()[i], false).encoding());
   }
   const std::vector<Encoding> one = encodings_of({{"scheme", std::string("iie")}});
   ASSERT_EQ(one.size(), 1U);
   EXPECT_EQ(one[0].scheme, "iie");
+  EXPECT_EQ(encodings_of({{"scheme", std::string("flux")}}).size(), 1U);
+  EXPECT_EQ(encodings_of({{"scheme", std::string("flux+iie")}}).size(), 2U);
 }
 
 TEST(EstimateMemory, KnowsFormatsInAnyCaseAndTheCostsOfFill) {

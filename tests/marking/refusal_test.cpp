@@ -61,7 +61,7 @@ TEST(Refusal, ShowsTheMarkThatIsThereInALine) {
   const auto shown = [](const std::string& text) {
     Marking marking;
     marking.status = MarkStatus::AlreadyMarked;
-    marking.found = {Message(text.begin(), text.end()), 32};
+    marking.found = {Message(text.begin(), text.end()), 32, {}};
     return reason(marking);
   };
   EXPECT_EQ(shown("for Ada"),
