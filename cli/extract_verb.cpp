@@ -2,6 +2,7 @@
 #include <cmath>
 #include <iostream>
 #include <memory>
+#include <set>
 
 #include "cli/app.h"
 #include "cli/options.h"
@@ -26,6 +27,31 @@ struct ExtractArguments {
   KeysArgument keys;
   RunArguments run;
 };
+
+// The messages that an owner hid, by which the numbers of flux layers are told.
+using KnownMessages = std::set<Message>;
+
+// Returns the messages of the marks in a ledger.
+KnownMessages messages_in(const Ledger& ledger) {
+  KnownMessages messages;
+  ledger.for_each_mark([&](const LedgerMark& mark) {
+    if (!mark.message_hex.empty()) messages.insert(from_hex(mark.message_hex));
+  });
+  return messages;
+}
+
+// Enters the message that a number stands for, if it is known. Of several that share a number, none
+// is: 16 bits tell few apart.
+void resolve_number(const KnownMessages& known, std::span<const Key> keys, FileReading& reading) {
+  if (!reading.mark || !reading.mark->flux || !reading.mark->message.empty()) return;
+  FoundMark& mark = *reading.mark;
+  const auto stands = [&](const Message& message) {
+    return stands_for(mark.flux->payload, message, keys[mark.key]);
+  };
+  const auto found = std::find_if(known.begin(), known.end(), stands);
+  if (found == known.end()) return;
+  if (std::find_if(std::next(found), known.end(), stands) == known.end()) mark.message = *found;
+}
 
 // Returns the exponent of the least power of two that is not below the probability.
 int power_of_two_above(double chance) {
@@ -137,13 +163,25 @@ std::vector<Encoding> encodings_in(const std::filesystem::path& records) {
   return encodings;
 }
 
+// Returns the messages of the marks in a file of records.
+KnownMessages messages_in_records(const std::filesystem::path& records) {
+  KnownMessages messages;
+  const auto next = record_source(records);
+  while (const std::optional<Record> record = next()) {
+    if (!record->file.request.is_fill()) messages.insert(record->file.request.message());
+  }
+  return messages;
+}
+
 int run_extract(const ExtractArguments& arguments) {
   const std::vector<Key> keys = arguments.keys.load();
   if (arguments.values.contains("scheme")) {
     check_contradictions(arguments.values, scheme_of(arguments.values));
   }
   std::vector<Encoding> encodings = encodings_of(arguments.values);
+  KnownMessages known;
   if (!arguments.like.empty()) {
+    known = messages_in_records(arguments.like);
     std::vector<Encoding> recorded = encodings_in(arguments.like);
     for (Encoding& encoding : encodings) {
       if (std::find(recorded.begin(), recorded.end(), encoding) == recorded.end()) {
@@ -156,11 +194,15 @@ int run_extract(const ExtractArguments& arguments) {
   return arguments.run.supervised([&](const WorkOrder& order) {
     std::optional<Ledger> ledger;
     if (!arguments.run.ledger().empty()) ledger.emplace(arguments.run.ledger());
+    if (ledger) known.merge(messages_in(*ledger));
     const LoggedRun run(ledger ? &*ledger : nullptr, order, "extract");
     RunTally tally(arguments.run, order, files.size(), kinds_of_results());
     read_files(
         files, encodings, keys, arguments.run.context(order),
-        [&](const ReadResult& result) { report_result(result, keys, arguments.json, run, tally); },
+        [&](ReadResult result) {
+          if (result.reading) resolve_number(known, keys, *result.reading);
+          report_result(result, keys, arguments.json, run, tally);
+        },
         order.board->stop());
     if (order.only) return kDone;
     int code = tally.finish("file", "files");

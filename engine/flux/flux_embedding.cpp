@@ -26,6 +26,12 @@ constexpr double kLeastSpreadGap = 0.002;
 // Fewer functionals cannot carry the least payload beside what a reader must be sure of.
 constexpr std::size_t kLeastUsed = 20;
 
+// Points for each functional: with fewer, the displacement has no freedom to be smooth.
+constexpr std::size_t kLeastPointsEach = 5;
+
+// Residuals at which a mark that cannot come closer is given up.
+constexpr double kMostResidual = 0.1;
+
 // Directions in the space of changes that respond less than this, relative to the strongest, are
 // not used: they would move the surface far.
 constexpr double kLeastResponse = 1e-3;
@@ -124,7 +130,7 @@ FluxCanvas::FluxCanvas(const Surface& surface) : surface_(surface), closed_(surf
   for (std::uint32_t i = 0; i < kFunctionals; ++i) {
     if (before_[i].used >= 0.5) used_.push_back(i);
   }
-  if (used_.size() < kLeastUsed) {
+  if (used_.size() < kLeastUsed || mesh.positions.size() < kLeastPointsEach * used_.size()) {
     obstacle_ = FluxObstacle::TooNarrow;
     return;
   }
@@ -316,6 +322,7 @@ std::optional<FluxCanvas::Written> FluxCanvas::write(const FluxBits& bits, const
     if (round == kMostRounds || !written || !follow_less(written->positions)) break;
     make_basis();
   }
+  if (written && written->residual > kMostResidual) return std::nullopt;
   return written;
 }
 

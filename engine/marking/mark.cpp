@@ -54,6 +54,13 @@ void mark_units(const MarkTask& task, MarkStages& stages, bool seeks_way_out) {
   }
 }
 
+// Says whether a reader finds the flux layer on the surface with other positions.
+bool reads(const FluxMark& mark, std::span<const Vec3> positions, const MarkTask& task) {
+  const Mesh mesh{{positions.begin(), positions.end()}, task.surface.mesh.triangles};
+  const auto found = read_flux({mesh, task.surface.halfedges}, task.key, FluxEffort::AsItIs);
+  return found && found->payload == mark.payload;
+}
+
 // Marks the units of a surface that has its flux layer. What they cannot carry is in the flux layer
 // anyway if they are marked only where possible.
 Marking with_units(const MarkTask& task, Marking flux_alone) {
@@ -69,6 +76,8 @@ Marking with_units(const MarkTask& task, Marking flux_alone) {
     return flux_alone;
   }
   marking.flux = flux_alone.flux;
+  const bool keeps_flux = reads(*marking.flux, marking.positions, task);
+  if (!keeps_flux && options.units == LayerUse::IfPossible) return flux_alone;
   return std::move(marking);
 }
 
@@ -92,6 +101,9 @@ Marking mark(const Surface& surface, const Payload& payload, const Key& key,
                             options.max_move_percent.value_or(0), options.max_visibility};
     FluxMarking flux = mark_flux(surface, *message, key, bounds, rounding);
     obstacle = flux.obstacle;
+    if (obstacle == FluxObstacle::None && !reads(flux.mark, flux.positions, task)) {
+      obstacle = FluxObstacle::TooFaint;  // by the output's numbers
+    }
     if (obstacle == FluxObstacle::None) {
       Marking alone;
       alone.format = options.format;

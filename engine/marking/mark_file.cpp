@@ -53,6 +53,7 @@ std::optional<FileStatus> refused_status(MarkStatus status) {
 // What a surface gives back of the mark.
 struct ReadBack {
   std::vector<Carrier> embedded;  // whose word can be read
+  bool has_flux = false;          // the flux layer can be read
   bool is_the_mark = false;
 };
 
@@ -111,7 +112,8 @@ ReadBack FileMarking::Work::read_from(const Surface& surface, const MarkedFile& 
   ReadBack read;
   if (marking.flux) {
     const auto flux = read_flux(surface, key, FluxEffort::AsItIs);
-    if (!flux || flux->payload != marking.flux->payload) return read;
+    read.has_flux = flux && flux->payload == marking.flux->payload;
+    if (!read.has_flux) return read;
   }
   if (marking.words.empty()) {  // the flux layer is all there is
     read.is_the_mark = marking.flux.has_value();
@@ -210,45 +212,66 @@ void FileMarking::load() noexcept {
   });
 }
 
+// Marks the loaded mesh; ends the stages if it is refused.
+void FileMarking::mark_as(const MarkOptions& options, const Key& key) {
+  const MeshFile& file = *work_->file;
+  const Surface surface{file.mesh(), *work_->halfedges};
+  const auto rounding = [&](const Vec3& point) { return file.round(point); };
+  work_->marking =
+      triglyph::mark(surface, result_.request.payload, key, options, rounding, file.number_step());
+  describe(work_->marking);
+  if (const auto status = refused_status(work_->marking.status)) {
+    end(*status, refusal(work_->marking, result_.request, file.number_step()));
+  }
+}
+
+void FileMarking::write_output() {
+  const std::vector<char> bytes = work_->file->patched(work_->marking.positions);
+  work_->output.emplace(result_.out);
+  parallel_pair([&] { result_.output_hash = content_hash(bytes); },
+                [&] { work_->output->write(bytes); });
+}
+
 void FileMarking::mark(const Key& key) noexcept {
   run_stage(result_.times.mark, [&] {
-    const MeshFile& file = *work_->file;
     MarkOptions& options = result_.request.options;
     result_.key_fingerprint = key.fingerprint();
     if (result_.request.is_fill()) {
-      options.scheme_options = fixed_for(file.mesh(), options.scheme_options);
+      options.scheme_options = fixed_for(work_->file->mesh(), options.scheme_options);
     }
-    const Surface surface{file.mesh(), *work_->halfedges};
-    const auto rounding = [&](const Vec3& point) { return file.round(point); };
-    work_->marking = triglyph::mark(surface, result_.request.payload, key, options, rounding,
-                                    file.number_step());
-    describe(work_->marking);
-    if (const auto status = refused_status(work_->marking.status)) {
-      end(*status, refusal(work_->marking, result_.request, file.number_step()));
-    }
+    mark_as(options, key);
   });
 }
 
 void FileMarking::write() noexcept {
-  run_stage(result_.times.write, [&] {
-    const std::vector<char> bytes = work_->file->patched(work_->marking.positions);
-    work_->output.emplace(result_.out);
-    parallel_pair([&] { result_.output_hash = content_hash(bytes); },
-                  [&] { work_->output->write(bytes); });
-  });
+  run_stage(result_.times.write, [&] { write_output(); });
 }
 
 void FileMarking::read_back(const Key& key) noexcept {
   run_stage(result_.times.read_back, [&] {
-    const Readable written(work_->output->temporary_path());
-    ReadBack read = work_->read_from(written.surface(), result_, key);
+    const auto read_written = [&] {
+      const Readable written(work_->output->temporary_path());
+      return work_->read_from(written.surface(), result_, key);
+    };
+    ReadBack read = read_written();
+    const MarkOptions& options = result_.request.options;
+    if (!read.is_the_mark && work_->marking.flux && options.flux == LayerUse::IfPossible) {
+      // polygons that are cut differently once marked spoil one layer: the other is enough
+      MarkOptions alone = options;
+      alone.flux = read.has_flux ? LayerUse::Yes : LayerUse::No;
+      alone.units = read.has_flux ? LayerUse::No : LayerUse::Yes;
+      mark_as(alone, key);
+      if (!result_.is_marked()) return;
+      write_output();
+      read = read_written();
+    }
     result_.units_embedded = static_cast<std::uint32_t>(read.embedded.size());
     if (!read.is_the_mark) {
       end(FileStatus::NotVerified, not_read_back(result_.units_embedded, result_.units_assigned,
                                                  work_->triangles_would_do(result_, key)));
       return;
     }
-    if (result_.request.options.detail) result_.units = std::move(read.embedded);
+    if (options.detail) result_.units = std::move(read.embedded);
   });
 }
 

@@ -127,6 +127,8 @@ class FileMarking {
   void run_stage(double& seconds, const Stage& stage) noexcept;
   void end(FileStatus status, const std::string& reason);
   void describe(const Marking& marking);
+  void mark_as(const MarkOptions& options, const Key& key);
+  void write_output();
 
   MarkedFile result_;
   std::unique_ptr<Work> work_;

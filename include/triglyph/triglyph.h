@@ -89,10 +89,11 @@ struct MarkReport {
 
 // What a file of unknown origin says.
 struct ReadReport {
-  std::optional<std::string> message;  // its bytes; nothing: no mark under these keys
-  std::string scheme;                  // that answered: "tsq", "aie" or "iie"
-  std::size_t key = 0;                 // index of the key that answered
-  std::uint32_t units_agreeing = 0;    // that say exactly this message
+  std::optional<std::string> message;  // its bytes; nothing: no mark under these keys, or a number
+  std::string number;   // hexadecimal: the flux layer holds the number of a message, not itself
+  std::string scheme;   // that answered: "tsq", "aie", "iie" or "flux"
+  std::size_t key = 0;  // index of the key that answered
+  std::uint32_t units_agreeing = 0;  // that say exactly this message
   double false_alarm = 0;  // chance at most that an unmarked mesh yields any message this way
 };
 

@@ -2,6 +2,7 @@
 #include <triglyph/triglyph.h>
 
 #include "engine/base/error.h"
+#include "engine/flux/flux_mark.h"
 #include "engine/marking/mark_file.h"
 #include "engine/marking/read_file.h"
 #include "engine/marking/verify_file.h"
@@ -94,7 +95,11 @@ ReadReport read_file(const std::filesystem::path& path, std::span<const SecretKe
   ReadReport report;
   report.false_alarm = reading.false_alarm;
   if (const auto& mark = reading.mark) {
-    report.message = std::string(mark->message.begin(), mark->message.end());
+    if (mark->flux && mark->flux->payload.content == FluxContent::Number) {
+      report.number = to_hex(bytes_of(mark->flux->payload));
+    } else {
+      report.message = std::string(mark->message.begin(), mark->message.end());
+    }
     report.scheme = mark->encoding.scheme;
     report.key = mark->key;
     report.units_agreeing = mark->agreeing;

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "tests/cli/cli_fixture.h"
+#include "tests/flux/flux_shapes.h"
 
 namespace triglyph {
 namespace {
@@ -236,6 +237,29 @@ TEST_F(Cli, MeasuresDistances) {
   EXPECT_LE(json["hausdorff"], json["displacement_max"]);
   EXPECT_EQ(nlohmann::json::parse(run("measure a.obj a.obj --json").out)["hausdorff"], 0);
   EXPECT_EQ(run("measure a.obj absent.obj").code, 2);
+}
+
+// A flux layer holds the number of a message that is too long for it; who hid it knows which.
+TEST_F(Cli, ExtractTellsNumbersByTheLedgerAndByRecords) {
+  const Mesh mesh = test::knobbly(50);
+  OutputFile file(folder_ / "a.obj");
+  file.write(export_mesh(mesh, {}));
+  file.commit();
+  ASSERT_EQ(run("mark a.obj --out o --scheme flux --message 'leak 4711' --records r.jsonl").code,
+            0);
+  const Result plain = run("extract o/a.obj --json");
+  EXPECT_EQ(plain.code, 0) << plain.err;
+  const auto json = nlohmann::json::parse(plain.out);
+  EXPECT_EQ(json["scheme"], "flux");
+  EXPECT_FALSE(json.contains("message_hex"));
+  EXPECT_EQ(json["number"].get<std::string>().size(), json["payload_bits"].get<int>() / 4);
+  EXPECT_NE(run("extract o/a.obj").out.find("number " + json["number"].get<std::string>()),
+            std::string::npos);
+  for (const char* memory : {"--ledger o.ledger", "--like r.jsonl"}) {
+    const Result told = run(std::string("extract o/a.obj ") + memory);
+    EXPECT_NE(told.out.find("\"leak 4711\"  flux"), std::string::npos) << memory << told.out;
+  }
+  EXPECT_EQ(run("verify r.jsonl").code, 0);
 }
 
 TEST_F(Cli, MeasuresWhatIsAskedFor) {
