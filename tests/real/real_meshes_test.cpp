@@ -203,7 +203,8 @@ TEST(RealMeshes, IntegralMarksSurviveNoiseOnThePapersModels) {
 TEST(RealMeshes, OutputDiffersFromInputInMovedCoordinatesOnly) {
   if (!fs::exists(kBunny)) GTEST_SKIP() << "glmark2-data is not installed";
   const test::TempFolder folder;
-  const MarkRequest request = resolve({{"message", std::string("x")}, {"scheme", std::string("tsq")}});
+  const MarkRequest request =
+      resolve({{"message", std::string("x")}, {"scheme", std::string("tsq")}});
   const MarkedFile record = mark_file(kBunny, folder / "bunny.obj", request, Key::trial());
   std::istringstream before(test::read_all(kBunny)), after(test::read_all(record.out));
   std::string a, b;
