@@ -38,6 +38,7 @@ constexpr GoldenMark kGoldenMarks[] = {
     {"tsq-fill.obj", "", ""},
     {"aie-all.obj", "--scheme aie --aie-groups all", "616c6c"},
     {"iie-radius.ply", "--scheme iie --radius 0.28", "72"},
+    {"flux-text.off", "", "6f6b"},
     {"owner.stl", "--scheme tsq --key-file owner.key", "6d696e65"},
 };
 
@@ -48,6 +49,7 @@ struct GoldenRecords {
 
 constexpr GoldenRecords kGoldenRecords[] = {
     {"records.jsonl", ""},
+    {"flux-records.jsonl", ""},
     {"owner-records.jsonl", "--key-file owner.key"},
 };
 
