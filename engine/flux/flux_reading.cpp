@@ -242,8 +242,11 @@ class FluxReader {
         for (std::size_t i = 0; i < kFunctionals; ++i) {
           agreeing += soft.ratio[i] != 0 && (soft.ratio[i] < 0) == (word[i] != 0) ? 1 : 0;
         }
-        best = FluxFound{*payload,     code.bits(), code.content(), evidence, attempt.guess->undone,
-                         attempt.step, agreeing};
+        best = FluxFound{{*payload, code.bits(), code.content()},
+                         evidence,
+                         attempt.guess->undone,
+                         attempt.step,
+                         agreeing};
       }
     }
     return best;
