@@ -4,15 +4,12 @@
 #include <cmath>
 
 #include "engine/base/parallel.h"
+#include "engine/flux/cotangents.h"
 #include "engine/mesh/edge_graph.h"
 #include "engine/mesh/point_faces.h"
 
 namespace triglyph {
 namespace {
-
-constexpr double kLeastCotangent = 0.02;
-constexpr double kMostCotangent = 20;
-constexpr double kLeastArea = 1e-3;  // of a point, in relation to the mean
 
 // Residual, in relation to the right side, and iterations at which the flow is near enough: it is a
 // direction to search along, no result.
@@ -41,15 +38,7 @@ struct FlowMatrix {
 FlowMatrix::FlowMatrix(const Mesh& mesh, double time) {
   const std::size_t points = mesh.positions.size();
   const PointFaces faces = point_faces(mesh);
-  areas.assign(points, 0);
-  double total = 0;
-  for (const Triangle& t : mesh.triangles) {
-    const double area = triangle_area(mesh.positions, t);
-    total += area;
-    for (const std::uint32_t point : t) areas[point] += area / 3;
-  }
-  const double least = kLeastArea * total / static_cast<double>(points);
-  for (double& area : areas) area = std::max(area, least);
+  areas = point_areas(mesh);
   diagonal = areas;
   // two entries a face at each point; neighbours repeat, which does no harm
   offsets.assign(points + 1, 0);
@@ -70,11 +59,9 @@ FlowMatrix::FlowMatrix(const Mesh& mesh, double time) {
           for (const std::size_t end : {(corner + 1) % 3, (corner + 2) % 3}) {
             // the edge to `end` is opposite to the third corner
             const std::uint32_t apex = t[3 - corner - end];
-            const Vec3 u = mesh.positions[point] - mesh.positions[apex];
-            const Vec3 v = mesh.positions[t[end]] - mesh.positions[apex];
-            const double sine = std::max(cross(u, v).norm(), 1e-12 * u.norm() * v.norm());
-            const double cotangent = sine > 0 ? dot(u, v) / sine : kLeastCotangent;
-            const double weight = time * std::clamp(cotangent, kLeastCotangent, kMostCotangent) / 2;
+            const double weight =
+                time * cotangent_weight(mesh.positions[apex], mesh.positions[point],
+                                        mesh.positions[t[end]]);
             columns[at] = t[end];
             values[at++] = -weight;
             diagonal[point] += weight;
