@@ -25,11 +25,6 @@ struct NamedAttack {
   Attack apply;
 };
 
-Mesh turned_inside_out(Mesh mesh) {
-  for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
-  return mesh;
-}
-
 std::vector<NamedAttack> attacks() {
   using namespace test;
   const auto noise = [](double intensity) {
@@ -71,7 +66,9 @@ std::vector<NamedAttack> attacks() {
       {"one smoothing step", [](const Mesh& m, std::uint64_t) { return test::smoothed(m); }},
       {"10 % of points decimated",
        [](const Mesh& m, std::uint64_t) { return test::decimated(m, 0.1); }},
-      {"inside out", [](const Mesh& m, std::uint64_t) { return turned_inside_out(m); }},
+      {"inside out", [](const Mesh& m, std::uint64_t) { return test::turned_inside_out(m); }},
+      {"mirrored",
+       [](const Mesh& m, std::uint64_t) { return test::turned_inside_out(test::mirrored(m)); }},
   };
 }
 

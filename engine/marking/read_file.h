@@ -30,7 +30,8 @@ struct FileReading {
   std::uint32_t units_with_marker = 0;  // in the attempt that found the mark, else the most of any
   // Upper bound of the probability that an unmarked mesh yields a message in any of the attempts
   // made, the sum over them: 2^-32 for an attempt with tsq or aie, 2^-22 with iie, which tries 2^10
-  // messages.
+  // messages. Where no mark is found every encoding is tried turned over, too: once more with tsq
+  // and aie, three times with iie.
   double false_alarm = 0;
 };
 
