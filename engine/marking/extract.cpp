@@ -14,11 +14,9 @@ namespace {
 // nothing once in a hundred times costs little.
 constexpr double kFewByChance = 0.01;
 
-}  // namespace
-
-Extraction extract(const BoundScheme& scheme, const WordCode& code, int doubtful_parts) {
+Extraction extract_from(std::vector<Reading> readings, const WordCode& code, int doubtful_parts) {
   Extraction result;
-  result.readings = scheme.read();
+  result.readings = std::move(readings);
   Votes votes(code);
   for (const Reading& reading : result.readings) votes.add(reading);
   Decoded decoded = decode(votes, code, doubtful_parts);
@@ -35,6 +33,25 @@ Extraction extract(const BoundScheme& scheme, const WordCode& code, int doubtful
   result.agreement = 1;
   for (std::uint32_t index = 0; index < result.parts; ++index) {
     result.agreement = std::min(result.agreement, votes.agreement(index));
+  }
+  return result;
+}
+
+}  // namespace
+
+Extraction extract_as_is(const BoundScheme& scheme, const WordCode& code, int doubtful_parts) {
+  return extract_from(scheme.read(), code, doubtful_parts);
+}
+
+Extraction extract(const BoundScheme& scheme, const WordCode& code, int doubtful_parts) {
+  Extraction result = extract_as_is(scheme, code, doubtful_parts);
+  if (result.message) return result;
+  for (std::vector<Reading>& readings : scheme.read_turned_over()) {
+    Extraction turned = extract_from(std::move(readings), code, doubtful_parts);
+    result.false_alarm += turned.false_alarm;
+    if (!turned.message) continue;
+    turned.false_alarm = result.false_alarm;
+    return turned;
   }
   return result;
 }

@@ -22,16 +22,22 @@ struct Extraction {
   std::uint32_t agreeing = 0;      // units whose word is exactly that of the message
   double agreement = 0;            // least agreement of the votes over all parts, 0 to 1
   double false_alarm = 0;          // probability that an unmarked mesh yields a message
-  std::vector<Reading> readings;   // all units with the marker, genuine or by chance
+  std::vector<Reading> readings;   // all units with the marker, genuine or by chance; without a
+                                   // message those of the surface as it is
   // The flux layer, read under the encoding "flux" alone; with it `message` may be missing, since a
   // number stands for one.
   std::optional<FluxFound> flux;
 };
 
-// Extracts with a scheme that is bound to the surface. `doubtful_parts` is as in decode().
-// O(triangles).
+// Extracts with a scheme that is bound to the surface, also if the surface was turned inside out or
+// mirrored since it was marked: that is tried if the surface as it is shows no message, and adds to
+// the probability of a false alarm. `doubtful_parts` is as in decode(). O(triangles).
 [[nodiscard]] Extraction extract(const BoundScheme& scheme, const WordCode& code,
                                  int doubtful_parts = 0);
+
+// Extracts from the surface as it is alone.
+[[nodiscard]] Extraction extract_as_is(const BoundScheme& scheme, const WordCode& code,
+                                       int doubtful_parts = 0);
 
 // Extracts with the scheme and the word format of an encoding. Throws Error Usage for an unknown
 // scheme or options out of range.

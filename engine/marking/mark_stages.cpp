@@ -100,7 +100,8 @@ Extraction MarkStages::read() const {
     const auto sample = binding_->bound->read_sample(kOneInSample);
     if (sample && !has_repeated_words(*sample, task_.options.format)) return {};
   }
-  return extract(*binding_->bound, binding_->code, doubtful_parts(task_.options.scheme_options));
+  return extract_as_is(*binding_->bound, binding_->code,
+                       doubtful_parts(task_.options.scheme_options));
 }
 
 void MarkStages::select_units() {

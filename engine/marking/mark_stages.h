@@ -37,8 +37,8 @@ class MarkStages {
  public:
   explicit MarkStages(const MarkTask& task);
 
-  // Reads the mesh as it is, as blindly as any reader does; with a scheme that takes long to read,
-  // only if a sample of the mesh looks marked. O(triangles).
+  // Reads the mesh as it is, not turned over, as blindly as any reader does; with a scheme that
+  // takes long to read, only if a sample of the mesh looks marked. O(triangles).
   [[nodiscard]] Extraction read() const;
 
   // Step 1 of the paper: finds the units that do not interfere.

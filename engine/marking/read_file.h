@@ -32,7 +32,9 @@ struct FileReading {
   std::uint32_t units_with_marker = 0;  // in the attempt that found the mark, else the most of any
   // Upper bound of the probability that an unmarked mesh yields a message in any of the attempts
   // made, the sum over them: 2^-32 for an attempt with tsq, aie or flux, 2^-22 with iie, which
-  // tries 2^10 messages. What the flux layer found counts with what it proves.
+  // tries 2^10 messages. Where no mark is found every encoding of units is tried turned over, too:
+  // once more with tsq and aie, three times with iie. What the flux layer found counts with what it
+  // proves.
   double false_alarm = 0;
 };
 

@@ -70,6 +70,12 @@ class BoundScheme {
   // number the same places as in find_units. Reading is blind: it knows nothing of the original.
   [[nodiscard]] virtual std::vector<Reading> read() const = 0;
 
+  // Returns what read() would return of the surface before it was turned over: its triangles wound
+  // the other way, or its shape mirrored, or both. One list for each of these that the scheme can
+  // tell from another and from read(); anchors number the same places. At most as many times the
+  // cost of read() as there are lists.
+  [[nodiscard]] virtual std::vector<std::vector<Reading>> read_turned_over() const = 0;
+
   // Returns those of the readings of read() at one in `one_in` places, drawn by lot; nothing for
   // schemes of which reading everything costs little beside marking, or is needed in any case.
   [[nodiscard]] virtual std::optional<std::vector<Reading>> read_sample(

@@ -95,6 +95,20 @@ TEST_P(EverySchemesMark, AnotherKeyAndAnUnmarkedMeshYieldNothing) {
   EXPECT_FALSE(read(ball_for(options_).mesh, Key::trial(), options_).message);
 }
 
+TEST_P(EverySchemesMark, IsReadFromTheSurfaceTurnedInsideOutAndFromItsMirrorImage) {
+  const Mesh marked = marked_ball(options_);
+  const double one_attempt = read(marked, Key::trial(), options_).false_alarm;
+  const Mesh turned = test::turned_inside_out(marked);
+  for (const Mesh& other : {turned, test::mirrored(marked), test::mirrored(turned)}) {
+    const Extraction found = read(test::shuffled(other, 1), Key::trial(), options_);
+    EXPECT_EQ(found.message, kMessage);
+    EXPECT_EQ(found.agreeing, read(marked, Key::trial(), options_).agreeing);
+  }
+  // what was tried is paid for
+  EXPECT_GE(read(turned, Key::trial(), options_).false_alarm, 2 * one_attempt);
+  EXPECT_GE(read(marked, Key::generate(), options_).false_alarm, 2 * one_attempt);
+}
+
 TEST_P(EverySchemesMark, AMarkedMeshIsMarkedAgainOnlyIfThatIsWanted) {
   const test::Solid once(marked_ball(options_));
   const auto mark_again = [&](const Key& key) {

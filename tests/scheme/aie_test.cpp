@@ -54,8 +54,10 @@ std::uint32_t middle_edge(const test::Solid& grid, std::uint32_t from, std::uint
 TEST(EdgeNeighbourhood, GroupsNeighboursOfARegularEdge) {
   const test::Solid grid(test::flat_grid(5, 5));
   const std::uint32_t edge = middle_edge(grid, 14, 15);
-  const auto forward = neighbourhood_of(grid.surface(), edge, false, GroupRule::OuterApexes);
-  const auto backward = neighbourhood_of(grid.surface(), edge, true, GroupRule::OuterApexes);
+  const auto forward =
+      neighbourhood_of(grid.surface(), edge, EdgeWay::Forward, GroupRule::OuterApexes);
+  const auto backward =
+      neighbourhood_of(grid.surface(), edge, EdgeWay::Backward, GroupRule::OuterApexes);
   ASSERT_TRUE(forward && backward);
   const auto& along = forward->basis[0] == 14 ? *forward : *backward;
   const auto& against = forward->basis[0] == 14 ? *backward : *forward;
@@ -68,9 +70,9 @@ TEST(EdgeNeighbourhood, GroupsNeighboursOfARegularEdge) {
   EXPECT_TRUE(std::equal(swapped.begin(), swapped.end(), against.all_groups().begin(),
                          against.all_groups().end()));
 
-  const auto exclusive =
-      neighbourhood_of(grid.surface(), edge, along.basis == forward->basis ? false : true,
-                       GroupRule::ExclusiveNeighbours);
+  const auto exclusive = neighbourhood_of(
+      grid.surface(), edge, along.basis == forward->basis ? EdgeWay::Forward : EdgeWay::Backward,
+      GroupRule::ExclusiveNeighbours);
   ASSERT_TRUE(exclusive);
   const auto group = [](const EdgeNeighbourhood& around, std::size_t k) {
     const auto points = around.group(k);
@@ -80,9 +82,9 @@ TEST(EdgeNeighbourhood, GroupsNeighboursOfARegularEdge) {
   EXPECT_EQ(group(*exclusive, 1), (std::set<std::uint32_t>{16}));
   EXPECT_EQ(group(*exclusive, 2), (std::set<std::uint32_t>{27, 28}));
   EXPECT_EQ(group(*exclusive, 3), (std::set<std::uint32_t>{1, 2}));
-  const auto both =
-      neighbourhood_of(grid.surface(), edge, along.basis == forward->basis ? false : true,
-                       GroupRule::NeighboursAndApexes);
+  const auto both = neighbourhood_of(
+      grid.surface(), edge, along.basis == forward->basis ? EdgeWay::Forward : EdgeWay::Backward,
+      GroupRule::NeighboursAndApexes);
   ASSERT_TRUE(both);
   EXPECT_EQ(group(*both, 0), (std::set<std::uint32_t>{13, 20}));
   EXPECT_EQ(group(*both, 2), (std::set<std::uint32_t>{22, 27, 28}));
@@ -117,7 +119,7 @@ TEST(EdgeNeighbourhood, ExclusiveNeighboursAreThoseOfOneBasisPointAlone) {
   }
   std::size_t found = 0;
   for (std::uint32_t edge = 0; edge < solid.halfedges.edge_count(); ++edge) {
-    const auto basis = basis_of(solid.surface(), edge, false);
+    const auto basis = basis_of(solid.surface(), edge, EdgeWay::Forward);
     ASSERT_TRUE(basis);
     std::array<std::set<std::uint32_t>, 4> alone;
     for (std::size_t k = 0; k < 4; ++k) {
@@ -130,7 +132,7 @@ TEST(EdgeNeighbourhood, ExclusiveNeighboursAreThoseOfOneBasisPointAlone) {
       }
     }
     const auto around =
-        neighbourhood_of(solid.surface(), edge, false, GroupRule::ExclusiveNeighbours);
+        neighbourhood_of(solid.surface(), edge, EdgeWay::Forward, GroupRule::ExclusiveNeighbours);
     const bool none_empty =
         std::none_of(alone.begin(), alone.end(), [](const auto& group) { return group.empty(); });
     ASSERT_EQ(around.has_value(), none_empty);
@@ -148,8 +150,8 @@ TEST(EdgeNeighbourhood, ExclusiveNeighboursAreThoseOfOneBasisPointAlone) {
 TEST(EdgeNeighbourhood, NeedsASurfaceAllAround) {
   const test::Solid grid(test::flat_grid(5, 5));
   for (const GroupRule rule : {GroupRule::OuterApexes, GroupRule::MiddleNeighbours}) {
-    EXPECT_FALSE(neighbourhood_of(grid.surface(), middle_edge(grid, 0, 1), false, rule));
-    EXPECT_FALSE(neighbourhood_of(grid.surface(), middle_edge(grid, 0, 6), false, rule));
+    EXPECT_FALSE(neighbourhood_of(grid.surface(), middle_edge(grid, 0, 1), EdgeWay::Forward, rule));
+    EXPECT_FALSE(neighbourhood_of(grid.surface(), middle_edge(grid, 0, 6), EdgeWay::Forward, rule));
   }
 }
 

@@ -29,6 +29,18 @@ inline Mesh shuffled(const Mesh& mesh, std::uint64_t seed) {
 }
 
 // Random rotation (uniform quaternion), scale from 1e-3 to 1e3, shift of up to ten mesh sizes.
+// What an exporter does that winds triangles the other way round.
+inline Mesh turned_inside_out(Mesh mesh) {
+  for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+  return mesh;
+}
+
+// The mirror image, whose triangles are wound so that they face inwards.
+inline Mesh mirrored(Mesh mesh) {
+  for (Vec3& p : mesh.positions) p[0] = -p[0];
+  return mesh;
+}
+
 inline Mesh moved_rigidly_and_scaled(const Mesh& mesh, std::uint64_t seed) {
   const auto rotation = random_rotation(seed);
   const double scale = std::pow(10.0, 6 * random_unit(seed, 2, 0) - 3);

@@ -77,7 +77,11 @@ class AieScheme::Bound final : public SurfaceBinding {
                                  std::span<const Word> words) const override;
   [[nodiscard]] Embedding embed(const UnitSet& units, std::span<const Placement> placements,
                                 std::span<const Word> words) const override;
-  [[nodiscard]] std::vector<Reading> read() const override;
+  [[nodiscard]] std::vector<Reading> read() const override { return read_edges(EdgeWay::Forward); }
+  // The norm does not tell a surface from its mirror image.
+  [[nodiscard]] std::vector<std::vector<Reading>> read_turned_over() const override {
+    return {read_edges(EdgeWay::TurnedOver)};
+  }
   [[nodiscard]] std::optional<std::vector<Reading>> read_sample(
       std::uint32_t one_in) const override;
   [[nodiscard]] std::vector<Reading> read_at(std::span<const std::uint32_t> anchors) const override;
@@ -87,8 +91,10 @@ class AieScheme::Bound final : public SurfaceBinding {
   }
 
  private:
-  // Appends what an edge shows with each grouping, if it shows the marker.
-  void read_edge(std::uint32_t edge, std::vector<Reading>& out) const;
+  [[nodiscard]] std::vector<Reading> read_edges(EdgeWay way) const;
+  // Appends what an edge shows with each grouping, if it shows the marker; `way` is forward or
+  // turned over, and the opposite direction is read with either.
+  void read_edge(std::uint32_t edge, EdgeWay way, std::vector<Reading>& out) const;
 
   const AieScheme& scheme_;
 };
@@ -160,7 +166,7 @@ std::optional<Vec3> AieScheme::place(const Site& site, std::size_t group, const 
 }
 
 std::optional<AieScheme::Basis> AieScheme::basis_at(const Surface& surface, std::uint32_t edge) {
-  const auto points = basis_of(surface, edge, false);
+  const auto points = basis_of(surface, edge, EdgeWay::Forward);
   if (!points) return std::nullopt;
   const AffineNorm norm(corners_of(surface.mesh, *points), kPlaneBelow);
   const bool exact =
@@ -173,7 +179,7 @@ std::optional<AieScheme::Basis> AieScheme::basis_at(const Surface& surface, std:
 std::optional<EdgeNeighbourhood> AieScheme::neighbours_of(const Surface& surface,
                                                           const Basis& basis,
                                                           std::uint32_t anchor) const {
-  auto around = neighbourhood_of(surface, basis.edge, false, rule_of(anchor));
+  auto around = neighbourhood_of(surface, basis.edge, EdgeWay::Forward, rule_of(anchor));
   if (!around || !basis.norm.is_plane()) return around;
   for (const std::uint32_t point : around->all_groups()) {
     if (basis.norm.height(surface.mesh.positions[point]) > kExactPlane) return std::nullopt;
@@ -352,7 +358,8 @@ AieScheme::UnitReading AieScheme::unit_of(const Way& way, std::uint32_t anchor) 
 // of the other. Most edges show the marker neither way after a group or two, and end there.
 std::optional<AieScheme::UnitReading> AieScheme::read_unit(const Surface& surface,
                                                            const AffineNorm& norm,
-                                                           std::uint32_t anchor) const {
+                                                           std::uint32_t anchor,
+                                                           EdgeWay way) const {
   std::array<Way, 2> ways;
   const auto read_both_ways = [&](std::size_t k, std::span<const std::uint32_t> points) {
     std::array<double, EdgeNeighbourhood::kMaxPoints> values;
@@ -362,16 +369,16 @@ std::optional<AieScheme::UnitReading> AieScheme::read_unit(const Surface& surfac
       values[i] = std::log(norm(position));
     }
     for (std::size_t direction = 0; direction < 2; ++direction) {
-      Way& way = ways[direction];
-      if (!way.shows_marker) continue;
+      Way& read = ways[direction];
+      if (!read.shows_marker) continue;
       const std::size_t group = k ^ direction;
-      way.groups[group] =
+      read.groups[group] =
           read_group(channels_[group].quantiser(norm), {values.data(), points.size()});
-      way.shows_marker = shows_marker(group, way.groups[group].bits);
+      read.shows_marker = shows_marker(group, read.groups[group].bits);
     }
     return ways[0].shows_marker || ways[1].shows_marker;
   };
-  const bool is_whole = neighbourhood_of(surface, anchor / kAlternatives, false, rule_of(anchor),
+  const bool is_whole = neighbourhood_of(surface, anchor / kAlternatives, way, rule_of(anchor),
                                          std::cref(read_both_ways))
                             .has_value();
   if (!is_whole) return std::nullopt;
@@ -382,13 +389,13 @@ std::optional<AieScheme::UnitReading> AieScheme::read_unit(const Surface& surfac
   return turned ? backward : forward;
 }
 
-void AieScheme::Bound::read_edge(std::uint32_t edge, std::vector<Reading>& out) const {
-  const auto basis = basis_of(surface(), edge, false);
+void AieScheme::Bound::read_edge(std::uint32_t edge, EdgeWay way, std::vector<Reading>& out) const {
+  const auto basis = basis_of(surface(), edge, way);
   if (!basis) return;
   const AffineNorm norm(corners_of(mesh(), *basis), kPlaneBelow);
   if (!(norm.straightness() > 0)) return;
-  auto first = scheme_.read_unit(surface(), norm, kAlternatives * edge);
-  auto second = scheme_.read_unit(surface(), norm, kAlternatives * edge + 1);
+  auto first = scheme_.read_unit(surface(), norm, kAlternatives * edge, way);
+  auto second = scheme_.read_unit(surface(), norm, kAlternatives * edge + 1, way);
   const bool nested = scheme_.options_.groups == AieGroups::All;
   if (nested && first && second && first->reading.word == second->reading.word) {
     // one unit. Its points are those of the larger grouping if all of these agree: in a unit of
@@ -400,19 +407,19 @@ void AieScheme::Bound::read_edge(std::uint32_t edge, std::vector<Reading>& out) 
   if (second) out.push_back(second->reading);
 }
 
-std::vector<Reading> AieScheme::Bound::read() const {
+std::vector<Reading> AieScheme::Bound::read_edges(EdgeWay way) const {
   return parallel_collect<Reading>(surface().halfedges.edge_count(),
                                    [&](std::size_t edge, std::vector<Reading>& out) {
-                                     read_edge(static_cast<std::uint32_t>(edge), out);
+                                     read_edge(static_cast<std::uint32_t>(edge), way, out);
                                    });
 }
 
 std::optional<std::vector<Reading>> AieScheme::Bound::read_sample(std::uint32_t one_in) const {
-  return parallel_collect<Reading>(surface().halfedges.edge_count(),
-                                   [&](std::size_t edge, std::vector<Reading>& out) {
-                                     if (random_bits(kSampleSeed, 0, edge) % one_in != 0) return;
-                                     read_edge(static_cast<std::uint32_t>(edge), out);
-                                   });
+  return parallel_collect<Reading>(
+      surface().halfedges.edge_count(), [&](std::size_t edge, std::vector<Reading>& out) {
+        if (random_bits(kSampleSeed, 0, edge) % one_in != 0) return;
+        read_edge(static_cast<std::uint32_t>(edge), EdgeWay::Forward, out);
+      });
 }
 
 // Whole edges are read: where groupings are nested, one may count in place of the other.
@@ -421,7 +428,7 @@ std::vector<Reading> AieScheme::Bound::read_at(std::span<const std::uint32_t> an
     const std::uint32_t edge = anchors[i] / kAlternatives;
     if (edge >= surface().halfedges.edge_count()) return;
     std::vector<Reading> shown;
-    read_edge(edge, shown);
+    read_edge(edge, EdgeWay::Forward, shown);
     for (const Reading& reading : shown) {
       if (reading.anchor == anchors[i]) out.push_back(reading);
     }
@@ -433,8 +440,8 @@ PointLists AieScheme::Bound::points_of(std::span<const std::uint32_t> anchors) c
   for (const std::uint32_t anchor : anchors) {
     std::vector<std::uint32_t> points;
     if (anchor / kAlternatives < surface().halfedges.edge_count()) {
-      const auto around =
-          neighbourhood_of(surface(), anchor / kAlternatives, false, scheme_.rule_of(anchor));
+      const auto around = neighbourhood_of(surface(), anchor / kAlternatives, EdgeWay::Forward,
+                                           scheme_.rule_of(anchor));
       if (around) {
         points.assign(around->basis.begin(), around->basis.end());
         points.insert(points.end(), around->all_groups().begin(), around->all_groups().end());

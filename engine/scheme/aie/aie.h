@@ -96,7 +96,7 @@ class AieScheme final : public Scheme {
   [[nodiscard]] bool shows_marker(std::size_t group, std::uint32_t bits) const;
   [[nodiscard]] UnitReading unit_of(const Way& way, std::uint32_t anchor) const;
   [[nodiscard]] std::optional<UnitReading> read_unit(const Surface& surface, const AffineNorm& norm,
-                                                     std::uint32_t anchor) const;
+                                                     std::uint32_t anchor, EdgeWay way) const;
 
   AieOptions options_;
   WordFormat format_;

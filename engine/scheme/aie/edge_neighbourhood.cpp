@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/mesh/turned_halfedges.h"
+
 namespace triglyph {
 namespace {
 
@@ -17,7 +19,8 @@ struct Ring {
 };
 
 // Fills an empty ring. False at a boundary or if the ring is too long.
-bool walk_ring(const Halfedges& halfedges, Halfedge first, Ring& ring) {
+template <typename Connectivity>
+bool walk_ring(const Connectivity& halfedges, Halfedge first, Ring& ring) {
   Halfedge spoke = first;
   do {
     if (halfedges.is_boundary(spoke) || ring.size == ring.points.size()) return false;
@@ -36,8 +39,8 @@ struct RingStarts {
                                    // c's, d's outer apex
 };
 
-RingStarts ring_starts_of(const Halfedges& halfedges, std::uint32_t edge, bool reversed) {
-  const Halfedge along = halfedges.of_edge(edge, reversed ? 1 : 0);
+template <typename Connectivity>
+RingStarts ring_starts_of(const Connectivity& halfedges, Halfedge along) {
   const Halfedge back = halfedges.opposite(along);
   const Halfedge from_c = halfedges.previous(along);
   const Halfedge from_d = halfedges.previous(back);
@@ -45,8 +48,8 @@ RingStarts ring_starts_of(const Halfedges& halfedges, std::uint32_t edge, bool r
           {from_c, from_d, halfedges.next(along), halfedges.next(back)}};
 }
 
-std::optional<std::uint32_t> apex_behind(const Surface& surface, Halfedge side) {
-  const Halfedges& halfedges = surface.halfedges;
+template <typename Connectivity>
+std::optional<std::uint32_t> apex_behind(const Connectivity& halfedges, Halfedge side) {
   const Halfedge across = halfedges.opposite(side);
   if (halfedges.is_boundary(across)) return std::nullopt;
   return halfedges.to(halfedges.next(across));
@@ -61,9 +64,9 @@ bool all_different(std::span<const std::uint32_t> points) {
   return true;
 }
 
-std::optional<std::array<std::uint32_t, 4>> basis_in(const Surface& surface,
+template <typename Connectivity>
+std::optional<std::array<std::uint32_t, 4>> basis_in(const Connectivity& halfedges,
                                                      const RingStarts& starts) {
-  const Halfedges& halfedges = surface.halfedges;
   if (halfedges.is_boundary(starts.spokes[0]) || halfedges.is_boundary(starts.spokes[1])) {
     return std::nullopt;
   }
@@ -76,10 +79,11 @@ std::optional<std::array<std::uint32_t, 4>> basis_in(const Surface& surface,
 }
 
 // Collects the groups; says no where they cannot be told apart.
+template <typename Connectivity>
 class Grouping {
  public:
-  Grouping(const Surface& surface, const RingStarts& starts, EdgeNeighbourhood& result)
-      : surface_(surface), starts_(starts), result_(result) {}
+  Grouping(const Connectivity& halfedges, const RingStarts& starts, EdgeNeighbourhood& result)
+      : halfedges_(halfedges), starts_(starts), result_(result) {}
 
   [[nodiscard]] bool collect(GroupRule rule, const GroupVisit& visit) {
     if (rule != GroupRule::OuterApexes && !walk_rings()) return false;
@@ -98,7 +102,7 @@ class Grouping {
  private:
   bool walk_rings() {
     for (std::size_t k = 0; k < 4; ++k) {
-      if (!walk_ring(surface_.halfedges, starts_.spokes[k], rings_[k])) return false;
+      if (!walk_ring(halfedges_, starts_.spokes[k], rings_[k])) return false;
     }
     return true;
   }
@@ -107,7 +111,7 @@ class Grouping {
     const bool with_apex = rule == GroupRule::OuterApexes || rule == GroupRule::NeighboursAndApexes;
     if (rule != GroupRule::OuterApexes && !collect_exclusive(rule, k)) return false;
     if (!with_apex) return true;
-    const std::optional<std::uint32_t> apex = apex_behind(surface_, starts_.outer[k]);
+    const std::optional<std::uint32_t> apex = apex_behind(halfedges_, starts_.outer[k]);
     return apex && append(k, *apex);
   }
 
@@ -143,29 +147,44 @@ class Grouping {
     return true;
   }
 
-  const Surface& surface_;
+  const Connectivity& halfedges_;
   const RingStarts& starts_;
   EdgeNeighbourhood& result_;
   std::array<Ring, 4> rings_;
 };
 
-}  // namespace
-
-std::optional<std::array<std::uint32_t, 4>> basis_of(const Surface& surface, std::uint32_t edge,
-                                                     bool reversed) {
-  return basis_in(surface, ring_starts_of(surface.halfedges, edge, reversed));
-}
-
-std::optional<EdgeNeighbourhood> neighbourhood_of(const Surface& surface, std::uint32_t edge,
-                                                  bool reversed, GroupRule rule,
-                                                  const GroupVisit& visit) {
-  const RingStarts starts = ring_starts_of(surface.halfedges, edge, reversed);
-  const auto basis = basis_in(surface, starts);
+template <typename Connectivity>
+std::optional<EdgeNeighbourhood> neighbourhood_along(const Connectivity& halfedges, Halfedge along,
+                                                     GroupRule rule, const GroupVisit& visit) {
+  const RingStarts starts = ring_starts_of(halfedges, along);
+  const auto basis = basis_in(halfedges, starts);
   if (!basis) return std::nullopt;
   EdgeNeighbourhood result;
   result.basis = *basis;
-  if (!Grouping(surface, starts, result).collect(rule, visit)) return std::nullopt;
+  if (!Grouping(halfedges, starts, result).collect(rule, visit)) return std::nullopt;
   return result;
+}
+
+}  // namespace
+
+std::optional<std::array<std::uint32_t, 4>> basis_of(const Surface& surface, std::uint32_t edge,
+                                                     EdgeWay way) {
+  const Halfedge along = surface.halfedges.of_edge(edge, way == EdgeWay::Backward ? 1 : 0);
+  if (way == EdgeWay::TurnedOver) {
+    const TurnedHalfedges turned(surface.halfedges);
+    return basis_in(turned, ring_starts_of(turned, along));
+  }
+  return basis_in(surface.halfedges, ring_starts_of(surface.halfedges, along));
+}
+
+std::optional<EdgeNeighbourhood> neighbourhood_of(const Surface& surface, std::uint32_t edge,
+                                                  EdgeWay way, GroupRule rule,
+                                                  const GroupVisit& visit) {
+  const Halfedge along = surface.halfedges.of_edge(edge, way == EdgeWay::Backward ? 1 : 0);
+  if (way == EdgeWay::TurnedOver) {
+    return neighbourhood_along(TurnedHalfedges(surface.halfedges), along, rule, visit);
+  }
+  return neighbourhood_along(surface.halfedges, along, rule, visit);
 }
 
 }  // namespace triglyph

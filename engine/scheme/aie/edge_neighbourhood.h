@@ -44,24 +44,27 @@ struct EdgeNeighbourhood {
   }
 };
 
+// How an edge is read: along its first halfedge or its second, or along the first in the surface
+// whose triangles are wound the other way.
+enum class EdgeWay { Forward, Backward, TurnedOver };
+
 // Is called for each group in turn as soon as its points are known. Returns false if the
 // neighbourhood is not wanted.
 using GroupVisit = std::function<bool(std::size_t group, std::span<const std::uint32_t> points)>;
 
-// Returns the neighbourhood of an interior edge, read along its first halfedge or its second. Both
-// have the same points: group k of the one is group k ^ 1 of the other. Returns nothing at a
+// Returns the neighbourhood of an interior edge. Forward and backward have the same points: group k
+// of the one is group k ^ 1 of the other. Returns nothing at a
 // boundary, where a group would be empty, where points coincide, where the groups have more than
 // kMaxPoints points, or as soon as `visit`, where given, returns false. O(1): a ring that is walked
 // has at most kMaxPoints points.
 [[nodiscard]] std::optional<EdgeNeighbourhood> neighbourhood_of(const Surface& surface,
-                                                                std::uint32_t edge, bool reversed,
+                                                                std::uint32_t edge, EdgeWay way,
                                                                 GroupRule rule,
                                                                 const GroupVisit& visit = {});
 
 // Returns the points a, b, c, d of an edge; nothing at a boundary or where the edge's two faces
 // share all their points. O(1).
 [[nodiscard]] std::optional<std::array<std::uint32_t, 4>> basis_of(const Surface& surface,
-                                                                   std::uint32_t edge,
-                                                                   bool reversed);
+                                                                   std::uint32_t edge, EdgeWay way);
 
 }  // namespace triglyph

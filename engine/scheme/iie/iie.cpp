@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "engine/base/error.h"
+#include "engine/base/once.h"
 #include "engine/base/parallel.h"
 #include "engine/base/random.h"
 #include "engine/geometry/spatial_index.h"
@@ -102,7 +103,10 @@ class IieScheme::Bound final : public SurfaceBinding {
                                  std::span<const Word> words) const override;
   [[nodiscard]] Embedding embed(const UnitSet& units, std::span<const Placement> placements,
                                 std::span<const Word> words) const override;
-  [[nodiscard]] std::vector<Reading> read() const override;
+  [[nodiscard]] std::vector<Reading> read() const override {
+    return readings_of(own_sites(), Inside::AsIs);
+  }
+  [[nodiscard]] std::vector<std::vector<Reading>> read_turned_over() const override;
   [[nodiscard]] std::vector<Reading> read_at(std::span<const std::uint32_t> anchors) const override;
   [[nodiscard]] PointLists points_of(std::span<const std::uint32_t> anchors) const override;
   [[nodiscard]] std::unique_ptr<BoundScheme> moved_to(const Surface& moved) const override {
@@ -110,6 +114,16 @@ class IieScheme::Bound final : public SurfaceBinding {
   }
 
  private:
+  // Is the inside of the surface read as inside, or, where its triangles were turned over or its
+  // shape was mirrored, the outside?
+  enum class Inside { AsIs, Outside };
+  // Places that may carry units, and what their balls show.
+  struct Places {
+    std::vector<std::uint32_t> points;
+    std::vector<Vec3> centres;
+    std::vector<BallInvariants> invariants;
+  };
+
   using Balls = std::vector<std::optional<SampledBall>>;
   using KeptBalls = std::unordered_map<std::uint32_t, SampledBall>;  // by anchor
 
@@ -123,6 +137,12 @@ class IieScheme::Bound final : public SurfaceBinding {
                                    std::span<const Placement> placements,
                                    std::span<const Word> words) const;
   [[nodiscard]] std::optional<CapMoves> exact_moves(SampledBall& sampled, const Word& word) const;
+  [[nodiscard]] Places places_at(std::vector<std::uint32_t> points) const;
+  // The places that marking uses too.
+  [[nodiscard]] const Places& own_sites() const {
+    return own_sites_.get([&] { return places_at(sites_->points); });
+  }
+  [[nodiscard]] std::vector<Reading> readings_of(const Places& places, Inside inside) const;
 
   const IieScheme& scheme_;
   std::shared_ptr<const IieSites> sites_;
@@ -130,6 +150,7 @@ class IieScheme::Bound final : public SurfaceBinding {
   double radius_;
   SpatialIndex index_;
   BallGround ground_;
+  Once<Places> own_sites_;
   mutable std::mutex kept_mutex_;
   mutable std::shared_ptr<const KeptBalls> kept_ = std::make_shared<KeptBalls>();
 };
@@ -323,38 +344,55 @@ Embedding IieScheme::Bound::embed_in(Balls& balls, double read_radius,
   });
 }
 
-std::vector<Reading> IieScheme::Bound::read() const {
-  const std::vector<std::uint32_t>& sites = sites_->points;
-  std::vector<Vec3> centres(sites.size());
+IieScheme::Bound::Places IieScheme::Bound::places_at(std::vector<std::uint32_t> points) const {
+  Places places{std::move(points), {}, {}};
+  places.centres.resize(places.points.size());
   parallel_for(
-      centres.size(),
+      places.points.size(),
       [&](std::size_t i) {
-        centres[i] = ground_.mean_of(
-            points_within(surface().halfedges, sites[i], ground_.centre_rings).value());
+        places.centres[i] = ground_.mean_of(
+            points_within(surface().halfedges, places.points[i], ground_.centre_rings).value());
       },
       kUnitsPerTask);
-  const std::vector<BallInvariants> invariants =
-      all_ball_invariants(mesh().positions, mesh().triangles, index_, sites_->at_boundary, centres,
-                          radius_, ground_.most_triangles);
+  places.invariants =
+      all_ball_invariants(mesh().positions, mesh().triangles, index_, sites_->at_boundary,
+                          places.centres, radius_, ground_.most_triangles);
+  return places;
+}
+
+// Mirroring reverses the rings unless the triangles are turned over as well, and either exchanges
+// inside and outside unless both were done.
+std::vector<std::vector<Reading>> IieScheme::Bound::read_turned_over() const {
+  const IieSites turned =
+      find_sites(surface().halfedges, mesh().positions.size(), scheme_.options_.site_rings,
+                 scheme_.site_seed_, RingOrder::TurnedOver);
+  const Places places = places_at(turned.points);
+  return {readings_of(places, Inside::AsIs), readings_of(places, Inside::Outside),
+          readings_of(own_sites(), Inside::Outside)};
+}
+
+std::vector<Reading> IieScheme::Bound::readings_of(const Places& places, Inside inside) const {
   const std::uint32_t marker_mask = (1U << scheme_.marker_bits_) - 1;
   std::vector<Reading> readings;
-  std::vector<Vec3> places;
-  for (std::size_t i = 0; i < centres.size(); ++i) {
-    const Quantiser::Cell area = scheme_.area_.cell_of(invariants[i].area);
-    const Quantiser::Cell volume = scheme_.volume_.cell_of(invariants[i].volume);
-    const bool crosses = invariants[i].area > 0 && invariants[i].area < 1;  // false for a NaN
+  std::vector<Vec3> centres;
+  for (std::size_t i = 0; i < places.points.size(); ++i) {
+    BallInvariants shares = places.invariants[i];
+    if (inside == Inside::Outside) shares = {1 - shares.area, 1 - shares.volume};
+    const Quantiser::Cell area = scheme_.area_.cell_of(shares.area);
+    const Quantiser::Cell volume = scheme_.volume_.cell_of(shares.volume);
+    const bool crosses = shares.area > 0 && shares.area < 1;  // false for a NaN
     if (!crosses || (area.bits & marker_mask) != scheme_.marker_) continue;
     const float squared = area.distance * area.distance + volume.distance * volume.distance;
     Reading reading;
-    reading.anchor = sites[i];
+    reading.anchor = places.points[i];
     reading.word = {area.bits >> scheme_.marker_bits_, volume.bits};
     reading.worst_offset = std::max(area.distance, volume.distance);
     reading.weight = static_cast<float>(std::exp(-kSharpness * double{squared}));
     reading.bit_weights.fill(1);
     readings.push_back(reading);
-    places.push_back(centres[i]);
+    centres.push_back(places.centres[i]);
   }
-  return keep_best_apart(std::move(readings), places, radius_);
+  return keep_best_apart(std::move(readings), centres, radius_);
 }
 
 // Every site is read: whether a reading stays depends on those about it.

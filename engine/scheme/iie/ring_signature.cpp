@@ -11,7 +11,10 @@ constexpr std::size_t kPointsPerTask = 1024;
 // Each point's new colour: its own and those of its ring, neighbour by neighbour. A sum over
 // consecutive pairs needs no starting point and still depends on the order.
 std::vector<std::uint64_t> refine(const Halfedges& halfedges,
-                                  const std::vector<std::uint64_t>& colours) {
+                                  const std::vector<std::uint64_t>& colours, RingOrder order) {
+  const auto pair = [order](std::uint64_t one, std::uint64_t next) {
+    return order == RingOrder::AsIs ? random_bits(one, 0, next) : random_bits(next, 0, one);
+  };
   std::vector<std::uint64_t> refined(colours.size(), 0);
   parallel_for(
       colours.size(),
@@ -23,10 +26,10 @@ std::vector<std::uint64_t> refine(const Halfedges& halfedges,
           const std::uint64_t colour = colours[other];
           complete = complete && colour != 0;
           if (first == 0) first = colour;
-          if (last != 0) sum += random_bits(last, 0, colour);
+          if (last != 0) sum += pair(last, colour);
           last = colour;
         });
-        sum += random_bits(last, 0, first);
+        sum += pair(last, first);
         if (complete) refined[i] = random_bits(colours[i], 1, sum) | 1;
       },
       kPointsPerTask);
@@ -36,7 +39,7 @@ std::vector<std::uint64_t> refine(const Halfedges& halfedges,
 }  // namespace
 
 std::vector<std::uint64_t> ring_signatures(const Halfedges& halfedges, std::size_t points,
-                                           std::uint64_t seed) {
+                                           std::uint64_t seed, RingOrder order) {
   std::vector<std::uint64_t> colours(points, 0);
   parallel_for(
       points,
@@ -48,7 +51,7 @@ std::vector<std::uint64_t> ring_signatures(const Halfedges& halfedges, std::size
       },
       kPointsPerTask);
   for (const std::uint32_t copied : halfedges.copied_points()) colours[copied] = 0;
-  return refine(halfedges, refine(halfedges, colours));
+  return refine(halfedges, refine(halfedges, colours, order), order);
 }
 
 }  // namespace triglyph

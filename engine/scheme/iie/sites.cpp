@@ -22,8 +22,9 @@ std::vector<char> triangles_at_boundary(const Halfedges& halfedges) {
 
 }  // namespace
 
-IieSites find_sites(const Halfedges& halfedges, std::size_t points, int rings, std::uint64_t seed) {
-  const std::vector<std::uint64_t> signatures = ring_signatures(halfedges, points, seed);
+IieSites find_sites(const Halfedges& halfedges, std::size_t points, int rings, std::uint64_t seed,
+                    RingOrder order) {
+  const std::vector<std::uint64_t> signatures = ring_signatures(halfedges, points, seed, order);
   const auto is_site = [&](std::uint32_t point) {
     const std::uint64_t own = signatures[point];
     if (own == 0) return false;

@@ -18,10 +18,10 @@ struct IieSites {
 };
 
 // Returns the sites of a surface: the points whose keyed ring signature none within `rings` rings
-// beats, or with 0 rings all points that have a signature. Parallel, O(halfedges) and the rings of
-// the few points that beat their neighbours.
+// beats, or with 0 rings all points that have a signature; or those of the surface turned over.
+// Parallel, O(halfedges) and the rings of the few points that beat their neighbours.
 [[nodiscard]] IieSites find_sites(const Halfedges& halfedges, std::size_t points, int rings,
-                                  std::uint64_t seed);
+                                  std::uint64_t seed, RingOrder order = RingOrder::AsIs);
 
 // Returns the points within so many rings of a point, itself among them, ascending. Returns nothing
 // once accept(other) returns false for one of them, or if a fan is open. O(n log n) for n points.

@@ -60,6 +60,11 @@ std::optional<Quadruple> quadruple_of(const Surface& surface, std::uint32_t face
   return points;
 }
 
+// The same six points as a surface has them whose triangles are wound the other way.
+Quadruple turned_over(const Quadruple& points) {
+  return {points[1], points[0], points[2], points[3], points[5], points[4]};
+}
+
 // The outer triangle on side i of M, its base as the outer triangle runs along it.
 FlatTriangle outer_triangle(const std::array<Vec3, 3>& corners, std::size_t i, const Vec3& apex) {
   return flatten(corners[(i + 1) % 3], corners[i], apex);
@@ -206,7 +211,10 @@ class TsqScheme::Bound final : public SurfaceBinding {
                                  std::span<const Word> words) const override;
   [[nodiscard]] Embedding embed(const UnitSet& units, std::span<const Placement> placements,
                                 std::span<const Word> words) const override;
-  [[nodiscard]] std::vector<Reading> read() const override;
+  [[nodiscard]] std::vector<Reading> read() const override { return read_wound(Winding::AsIs); }
+  [[nodiscard]] std::vector<std::vector<Reading>> read_turned_over() const override {
+    return {read_wound(Winding::TurnedOver)};
+  }
   [[nodiscard]] std::vector<Reading> read_at(std::span<const std::uint32_t> anchors) const override;
   [[nodiscard]] PointLists points_of(std::span<const std::uint32_t> anchors) const override;
   [[nodiscard]] std::unique_ptr<BoundScheme> moved_to(const Surface& moved) const override {
@@ -214,8 +222,13 @@ class TsqScheme::Bound final : public SurfaceBinding {
   }
 
  private:
+  // Lengths do not tell a surface from its mirror image, so that mirroring shows in the winding or
+  // not at all.
+  enum class Winding { AsIs, TurnedOver };
+
+  [[nodiscard]] std::vector<Reading> read_wound(Winding winding) const;
   // Appends what a triangle shows, if it shows the marker.
-  void read_face(std::uint32_t face, std::vector<Reading>& out) const;
+  void read_face(std::uint32_t face, Winding winding, std::vector<Reading>& out) const;
 
   const TsqScheme& scheme_;
 };
@@ -379,11 +392,7 @@ Embedding TsqScheme::Bound::embed(const UnitSet& units, std::span<const Placemen
   });
 }
 
-bool TsqScheme::has_marker(const Mesh& mesh, std::uint32_t base, Reading& reading) const {
-  const Triangle& points = mesh.triangles[reading.anchor];
-  const FlatTriangle triangle =
-      flatten(mesh.positions[points[base]], mesh.positions[points[(base + 1) % 3]],
-              mesh.positions[points[(base + 2) % 3]]);
+bool TsqScheme::has_marker(const FlatTriangle& triangle, Reading& reading) const {
   const auto height = marker_channel_.height.cell_of(triangle.height);
   if (height.bits != marker_channel_.height_bits(marker_)) return false;
   const auto log_ratio = marker_channel_.log_ratio.cell_of(triangle.shape().log_ratio);
@@ -415,27 +424,35 @@ void TsqScheme::read_outer(const Mesh& mesh, const Quadruple& points, Reading& r
   reading.word = {bits[0], bits[1] | bits[2] << outer_channels_[1].bits()};
 }
 
-void TsqScheme::Bound::read_face(std::uint32_t face, std::vector<Reading>& out) const {
+void TsqScheme::Bound::read_face(std::uint32_t face, Winding winding,
+                                 std::vector<Reading>& out) const {
   Reading reading;
   reading.anchor = face;
   const std::uint32_t base = longest_side(mesh(), face);
-  if (!scheme_.has_marker(mesh(), base, reading)) return;  // most faces end here
-  const auto points = quadruple_of(surface(), face, base);
+  const auto corner = [&](std::uint32_t i) -> const Vec3& {
+    return mesh().positions[mesh().triangles[face][(base + i) % 3]];
+  };
+  const bool is_turned = winding == Winding::TurnedOver;
+  const FlatTriangle triangle = is_turned ? flatten(corner(1), corner(0), corner(2))
+                                          : flatten(corner(0), corner(1), corner(2));
+  if (!scheme_.has_marker(triangle, reading)) return;  // most faces end here
+  auto points = quadruple_of(surface(), face, base);
   if (!points) return;
+  if (is_turned) points = turned_over(*points);
   scheme_.read_outer(mesh(), *points, reading);
   if (std::isfinite(reading.weight)) out.push_back(reading);
 }
 
-std::vector<Reading> TsqScheme::Bound::read() const {
+std::vector<Reading> TsqScheme::Bound::read_wound(Winding winding) const {
   return parallel_collect<Reading>(mesh().triangles.size(),
                                    [&](std::size_t face, std::vector<Reading>& out) {
-                                     read_face(static_cast<std::uint32_t>(face), out);
+                                     read_face(static_cast<std::uint32_t>(face), winding, out);
                                    });
 }
 
 std::vector<Reading> TsqScheme::Bound::read_at(std::span<const std::uint32_t> anchors) const {
   return parallel_collect<Reading>(anchors.size(), [&](std::size_t i, std::vector<Reading>& out) {
-    if (anchors[i] < mesh().triangles.size()) read_face(anchors[i], out);
+    if (anchors[i] < mesh().triangles.size()) read_face(anchors[i], Winding::AsIs, out);
   });
 }
 

@@ -79,7 +79,7 @@ class TsqScheme final : public Scheme {
   [[nodiscard]] std::optional<Marked> embed_marker(const Mesh& mesh,
                                                    std::span<const std::uint32_t> points) const;
   [[nodiscard]] std::array<std::uint32_t, 3> outer_bits(const Word& word) const;
-  [[nodiscard]] bool has_marker(const Mesh& mesh, std::uint32_t base, Reading& reading) const;
+  [[nodiscard]] bool has_marker(const FlatTriangle& triangle, Reading& reading) const;
   void read_outer(const Mesh& mesh, const std::array<std::uint32_t, 6>& points,
                   Reading& reading) const;
 
