@@ -86,8 +86,10 @@ OptionTable<Options> make_table() {
           "cost, or with the least sum of costs"),
       choice_option<Options>("cost", &Options::cost, cost_names(), "displacement",
                              "Local change of the surface that the assignment minimises"),
-      count_option<Options>("redundancy", &Options::redundancy, {0, 1e6}, "units", "32",
-                            "Units wanted for each part of the message; 0: as many as there are"),
+      count_option<Options>(
+          "redundancy", &Options::redundancy, {0, 1e6}, "units", "32",
+          "Units wanted for each part of the message; 0: as many as there are; iie uses "
+          "all in its local encoding"),
       number_option<Options>("max_move", &Options::max_move_percent, {0, 100},
                              "percent of the diagonal", "",
                              "Farthest that a point may move; a mesh that cannot be marked so is "
@@ -140,6 +142,15 @@ bool is_scheme_option(std::string_view key) {
                      [&](std::string_view scheme) { return has_option(scheme, key); });
 }
 
+// The options of an older generation, with the numbers of bits.
+OptionValues with_bits(const SchemeDefaults& older) {
+  OptionValues values = older.options;
+  values["marker_bits"] = std::int64_t{older.format.marker_bits};
+  values["subscript_bits"] = std::int64_t{older.format.subscript_bits};
+  values["part_bits"] = std::int64_t{older.format.part_bits};
+  return values;
+}
+
 // Overrides the scheme's defaults, checked by the scheme's own declarations.
 void apply_scheme_options(const OptionValues& values, MarkOptions& options) {
   for (const OptionSpec& spec : scheme_info(options.scheme).options) {
@@ -152,6 +163,10 @@ MarkOptions resolved_options(const OptionValues& values, std::string_view scheme
   MarkOptions options = default_mark_options(scheme, fill);
   apply_options(table(), values, options);
   apply_scheme_options(values, options);
+  options.format.is_spread = is_spread(scheme, options.scheme_options);
+  if (fill && options.format.is_spread) {
+    throw Error(ErrorCode::Usage, {}, "", "fill wants the global encoding of iie");
+  }
   validate(options.format);
   options.keeps_subscript_bits = options.keeps_subscript_bits && fill;
   options.detail = options.detail || options.scheme == "iie";  // locating damage is its use
@@ -278,6 +293,12 @@ std::vector<Encoding> encodings_of(const OptionValues& values) {
   for (const std::string_view scheme : scheme_names()) {
     if (values.contains("scheme") && scheme_of(values) != scheme) continue;
     encodings.push_back(resolved_options(values, scheme, false).encoding());
+    for (const SchemeDefaults& older : scheme_info(scheme).older()) {
+      const OptionValues all = layered(with_bits(older), values);
+      Encoding encoding = resolved_options(all, scheme, false).encoding();
+      const auto same = std::find(encodings.begin(), encodings.end(), encoding);
+      if (same == encodings.end()) encodings.push_back(std::move(encoding));
+    }
   }
   return encodings;
 }

@@ -39,6 +39,10 @@ constexpr GoldenMark kGoldenMarks[] = {
     {"aie-all.obj", "--scheme aie --aie-groups all", "616c6c"},
     {"iie-radius.ply", "--scheme iie --radius 0.28", "72"},
     {"owner.stl", "--scheme tsq --key-file owner.key", "6d696e65"},
+    // generation 2
+    {"iie-local.off", "", "6c"},
+    {"iie-local.ply", "", "00ff01"},
+    {"iie-local-wide.obj", "--scheme iie --step 0.004 --site-rings 6 --part-bits 2", "77"},
 };
 
 struct GoldenRecords {
@@ -48,6 +52,7 @@ struct GoldenRecords {
 
 constexpr GoldenRecords kGoldenRecords[] = {
     {"records.jsonl", ""},
+    {"records-2.jsonl", ""},
     {"owner-records.jsonl", "--key-file owner.key"},
 };
 
