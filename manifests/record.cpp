@@ -139,6 +139,9 @@ MarkRequest request_in(const Json& json, int schema) {
     }
   }
   values["scheme"] = json.at("scheme").get<std::string>();
+  // marks of the first generation were recorded before there was a second encoding
+  const bool is_iie = values["scheme"] == OptionValue(std::string("iie"));
+  if (is_iie) values.emplace("iie_encoding", std::string("global"));
   values["fill"] = json.at("fill").get<bool>();
   if (values["fill"] == OptionValue(false)) {
     values["message_hex"] = json.at("message_hex").get<std::string>();

@@ -25,10 +25,16 @@ Extraction extract_from(std::vector<Reading> readings, const WordCode& code, int
   if (!result.message) return result;
 
   const std::vector<Word> words = code.words_of(*result.message);
-  result.parts = static_cast<std::uint32_t>(words.size());
+  result.parts = least_units_for(code.format(), result.message->size());
   for (const Reading& reading : result.readings) {
     const std::uint32_t index = code.part_index(reading.word.subscript);
     if (index < words.size() && words[index] == reading.word) ++result.agreeing;
+  }
+  if (code.format().is_spread) {
+    // parts need not be carried, but every reading is of one
+    result.agreement =
+        static_cast<double>(result.agreeing) / static_cast<double>(result.readings.size());
+    return result;
   }
   result.agreement = 1;
   for (std::uint32_t index = 0; index < result.parts; ++index) {

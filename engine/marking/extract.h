@@ -18,9 +18,11 @@ namespace triglyph {
 
 struct Extraction {
   std::optional<Message> message;  // nothing: no mark under this key
-  std::uint32_t parts = 0;         // parts of the message; 0 without a message
+  std::uint32_t parts = 0;         // parts of the message, or of a spread one the units that carry
+                                   // it at least; 0 without a message
   std::uint32_t agreeing = 0;      // units whose word is exactly that of the message
-  double agreement = 0;            // least agreement of the votes over all parts, 0 to 1
+  double agreement = 0;            // least agreement of the votes over all parts, 0 to 1; of a
+                                   // spread message the share of the units that agree
   double false_alarm = 0;          // probability that an unmarked mesh yields a message
   std::vector<Reading> readings;   // all units with the marker, genuine or by chance; without a
                                    // message those of the surface as it is

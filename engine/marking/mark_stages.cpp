@@ -121,7 +121,8 @@ bool MarkStages::make_words() {
   const std::size_t units = capacity_.valid.size();
   if (!is_fill()) {
     marking_.words = binding_->code.words_of(*message_);
-    return units >= marking_.words.size();
+    marking_.parts_needed = least_units_for(marking_.format, message_->size());
+    return units >= least_units_for(marking_.format, message_->size());
   }
   if (units == 0) return false;
   if (!task_.options.keeps_subscript_bits) {
@@ -158,11 +159,13 @@ void MarkStages::embed(const MoveLimits& limits, const Capacity& capacity, Marki
   const BoundScheme& measured = limits.cap > 0 ? moves() : scheme;
   WordAssigner assigner(scheme, measured, capacity.units, capacity.valid, marking.words, options,
                         limits);
-  const bool once = is_fill() || options.assign == AssignMethod::Sequential;
+  const bool once = is_fill() || is_spread() || options.assign == AssignMethod::Sequential;
   for (int round = 0; round < (once ? 1 : kMaxRounds); ++round) {
     stop_point();
     const Stopwatch watch;
-    const WordPlan plan = is_fill() ? assigner.plan_all() : assigner.plan(options.redundancy);
+    const WordPlan plan = is_fill()     ? assigner.plan_all()
+                          : is_spread() ? assigner.plan_cheapest()
+                                        : assigner.plan(options.redundancy);
     marking.assign_seconds += watch.seconds();
     marking.cost_max = plan.cost_max;
     marking.cost_sum = plan.cost_sum;
@@ -174,20 +177,32 @@ void MarkStages::embed(const MoveLimits& limits, const Capacity& capacity, Marki
     for (const Placement& placement : lost) assigner.rule_out(placement);
   }
   marking.parts_carried = count_parts(marking);
+  if (is_spread()) marking.is_readable = reads_back(marking);
+}
+
+// How many units it takes depends on the sites without a mark, so that only reading tells.
+bool MarkStages::reads_back(const Marking& marking) const {
+  if (marking.parts_carried < marking.parts_needed) return false;
+  const Mesh marked{marking.positions, task_.surface.mesh.triangles};
+  const auto bound = binding_->bound->moved_to({marked, task_.surface.halfedges});
+  const Extraction found = extract_as_is(*bound, binding_->code);
+  return found.message && binding_->code.words_of(*found.message) == marking.words;
 }
 
 MarkStatus MarkStages::status_of(const Marking& marking) const {
   const bool lost_most = 2 * marking.units_dropped > marking.units_assigned;
   const bool is_coarse = task_.numbers.step > kCoarseStep * binding_->bound->cell_size();
   if (lost_most && is_coarse) return MarkStatus::TooCoarse;
-  const bool has_all =
-      is_fill() ? marking.parts_carried > 0 : marking.parts_carried == marking.words.size();
+  bool has_all = marking.parts_carried == marking.words.size();
+  if (is_fill()) has_all = marking.parts_carried > 0;
+  if (is_spread()) has_all = marking.is_readable;
   return has_all ? MarkStatus::Marked : MarkStatus::TooSmall;
 }
 
 Marking MarkStages::marked_within(double max_move_percent) {
   Marking trial;
   trial.words = marking_.words;
+  trial.parts_needed = marking_.parts_needed;
   embed({.cap = max_move_percent / 100 * diagonal_}, capacity_, trial);
   trial.status = status_of(trial);
   return trial;
@@ -196,6 +211,7 @@ Marking MarkStages::marked_within(double max_move_percent) {
 Marking MarkStages::marked_with(std::span<const std::uint8_t> message) {
   Marking trial;
   trial.words = binding_->code.words_of(message);
+  trial.parts_needed = least_units_for(marking_.format, message.size());
   trial.status = MarkStatus::TooSmall;
   // then the words decide which candidates are left out
   const bool depends_on_words = task_.options.drop_dearest_percent > 0;
@@ -203,7 +219,7 @@ Marking MarkStages::marked_with(std::span<const std::uint8_t> message) {
       depends_on_words ? find_capacity(task_.surface, *binding_->bound, trial.words, task_.options)
                        : Capacity{};
   const Capacity& capacity = depends_on_words ? other : capacity_;
-  if (capacity.valid.size() < trial.words.size()) return trial;
+  if (capacity.valid.size() < trial.parts_needed) return trial;
   embed(limits(), capacity, trial);
   trial.status = status_of(trial);
   return trial;

@@ -74,9 +74,12 @@ class MarkStages {
   };
 
   [[nodiscard]] bool is_fill() const { return message_ == nullptr; }
+  [[nodiscard]] bool is_spread() const { return !is_fill() && task_.options.format.is_spread; }
   [[nodiscard]] MoveLimits limits() const;
   [[nodiscard]] const BoundScheme& moves();
   void embed(const MoveLimits& limits, const Capacity& capacity, Marking& marking);
+  // Says whether a reader of the marked mesh finds the words of a spread message.
+  [[nodiscard]] bool reads_back(const Marking& marking) const;
 
   MarkTask task_;
   const Message* message_;  // null: fill

@@ -53,6 +53,8 @@ struct Marking {
   WordFormat format;                // of the words; fill chooses the subscript bits
   std::vector<Carrier> carriers;    // ascending by anchor
   std::uint32_t parts_carried = 0;  // parts with at least one carrier
+  std::uint32_t parts_needed = 0;   // by a message, of these
+  bool is_readable = true;          // a spread message: is it found among all votes?
   std::uint32_t candidates = 0;
   std::uint32_t units_valid = 0;      // chosen by the layout
   std::uint32_t units_bound = 0;      // upper bound of the size of any layout

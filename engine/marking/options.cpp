@@ -110,8 +110,10 @@ OptionTable<Options> make_table() {
           "cost, or with the least sum of costs"),
       choice_option<Options>("cost", &Options::cost, cost_names(), "displacement",
                              "Local change of the surface that the assignment minimises"),
-      count_option<Options>("redundancy", &Options::redundancy, {0, 1e6}, "units", "32",
-                            "Units wanted for each part of the message; 0: as many as there are"),
+      count_option<Options>(
+          "redundancy", &Options::redundancy, {0, 1e6}, "units", "32",
+          "Units wanted for each part of the message; 0: as many as there are; iie uses "
+          "all in its local encoding"),
       number_option<Options>("max_move", &Options::max_move_percent, {0, 100},
                              "percent of the diagonal", "",
                              "Farthest that a point may move; a mesh that cannot be marked so is "
@@ -166,6 +168,15 @@ bool is_scheme_option(std::string_view key) {
                      [&](std::string_view scheme) { return has_option(scheme, key); });
 }
 
+// The options of an older generation, with the numbers of bits.
+OptionValues with_bits(const SchemeDefaults& older) {
+  OptionValues values = older.options;
+  values["marker_bits"] = std::int64_t{older.format.marker_bits};
+  values["subscript_bits"] = std::int64_t{older.format.subscript_bits};
+  values["part_bits"] = std::int64_t{older.format.part_bits};
+  return values;
+}
+
 // Overrides the scheme's defaults, checked by the scheme's own declarations.
 void apply_scheme_options(const OptionValues& values, MarkOptions& options) {
   for (const OptionSpec& spec : scheme_info(options.scheme).options) {
@@ -178,6 +189,10 @@ MarkOptions resolved_options(const OptionValues& values, std::string_view name, 
   MarkOptions options = default_mark_options(name, fill);
   apply_options(table(), values, options);
   apply_scheme_options(values, options);
+  options.format.is_spread = is_spread(options.scheme, options.scheme_options);
+  if (fill && options.format.is_spread) {
+    throw Error(ErrorCode::Usage, {}, "", "fill wants the global encoding of iie");
+  }
   validate(options.format);
   options.keeps_subscript_bits = options.keeps_subscript_bits && fill;
   options.detail = options.detail || options.scheme == "iie";  // locating damage is its use
@@ -334,11 +349,20 @@ std::vector<Encoding> encodings_of(const OptionValues& values) {
   std::vector<Encoding> encodings;
   for (const std::string_view scheme : scheme_names()) {
     const bool is_wanted = !is_named || (named.units != LayerUse::No && named.scheme == scheme);
-    if (is_wanted) encodings.push_back(resolved_options(values, scheme, false).encoding());
+    if (is_wanted) {
+      encodings.push_back(resolved_options(values, scheme, false).encoding());
+      for (const SchemeDefaults& older : scheme_info(scheme).older()) {
+        const OptionValues all = layered(with_bits(older), values);
+        Encoding encoding = resolved_options(all, scheme, false).encoding();
+        const auto same = std::find(encodings.begin(), encodings.end(), encoding);
+        if (same == encodings.end()) encodings.push_back(std::move(encoding));
+      }
+    }
     // after the scheme that is the quickest to read
     const bool is_place = scheme == scheme_names().front();
-    if (is_place && named.flux != LayerUse::No)
+    if (is_place && named.flux != LayerUse::No) {
       encodings.push_back({std::string(kFluxScheme), {}, {}});
+    }
   }
   return encodings;
 }

@@ -125,6 +125,29 @@ WordPlan WordAssigner::solve(std::uint32_t redundancy) {
   return plan;
 }
 
+WordPlan WordAssigner::plan_cheapest() {
+  WordPlan plan;
+  for (std::size_t block = 0; block < blocks_; ++block) {
+    stop_point();
+    const std::vector<std::uint32_t> chosen = block_units(block);
+    const CostMatrix& costs = block_costs(block, chosen);
+    for (std::uint32_t row = 0; row < chosen.size(); ++row) {
+      std::uint32_t best = 0;
+      for (std::uint32_t word = 1; word < costs.words; ++word) {
+        if (costs.at(row, word) < costs.at(row, best)) best = word;
+      }
+      const float cost = costs.at(row, best);
+      if (cost == kInfeasible) continue;
+      plan.placements.push_back({chosen[row], best});
+      plan.cost_max = std::max(plan.cost_max, double{cost});
+      plan.cost_sum += double{cost};
+    }
+  }
+  std::sort(plan.placements.begin(), plan.placements.end(),
+            [](const Placement& a, const Placement& b) { return a.unit < b.unit; });
+  return plan;
+}
+
 std::vector<std::uint32_t> WordAssigner::block_units(std::size_t block) const {
   std::vector<std::uint32_t> chosen;
   for (std::size_t i = block; i < valid_.size(); i += blocks_) chosen.push_back(valid_[i]);

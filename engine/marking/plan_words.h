@@ -50,6 +50,10 @@ class WordAssigner {
   // Returns the best plan of every valid unit that can carry one of the words.
   [[nodiscard]] WordPlan plan_all() { return solve(0); }
 
+  // Returns the plan in which every valid unit carries the word that it carries at least cost, for
+  // words of which any may be left out.
+  [[nodiscard]] WordPlan plan_cheapest();
+
   // Returns the least move that some part needs in every plan that gives each part a unit, model
   // units; exact where one assignment holds all units. Precondition: no limits.
   [[nodiscard]] double least_move();

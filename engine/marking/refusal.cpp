@@ -28,14 +28,14 @@ std::string carries_mark(const FoundMessage& found) {
 
 // Says what the mesh lacks for a message of one byte.
 std::string carries_nothing(const Marking& marking, const MarkOptions& options) {
-  const std::uint32_t needed = parts_for(options.format, 1);
+  const std::uint32_t needed = least_units_for(options.format, 1);
   const std::string text = "this mesh carries no message of any length under " + options.scheme;
   if (marking.units_valid < needed) {
     return text + ": it has " + count_of(marking.units_valid, "unit") +
            ", a message of 1 byte needs " + std::to_string(needed);
   }
   const std::uint32_t carried =
-      marking.words.size() == needed ? marking.parts_carried : marking.way_out.least_parts_carried;
+      marking.parts_needed == needed ? marking.parts_carried : marking.way_out.least_parts_carried;
   return text + ": its " + count_of(marking.units_valid, "unit") + " carry " +
          std::to_string(carried) + " of the " + std::to_string(needed) +
          " parts of a message of 1 byte";
@@ -43,13 +43,13 @@ std::string carries_nothing(const Marking& marking, const MarkOptions& options) 
 
 std::string too_small_for_message(const Marking& marking, const MarkRequest& request) {
   const WayOut& way_out = marking.way_out;
-  const std::string needs = count_of(marking.words.size(), "part") + " needed, ";
+  const std::string needs = count_of(marking.parts_needed, "part") + " needed, ";
   const std::string farther =
       way_out.max_move_percent > 0
           ? "allow moves that may be seen with --max-move " + to_text(way_out.max_move_percent)
           : "";
   if (way_out.message_bytes > 0) {
-    const std::uint32_t fit = parts_for(request.options.format, way_out.message_bytes);
+    const std::uint32_t fit = least_units_for(request.options.format, way_out.message_bytes);
     return needs + std::to_string(fit) + " fit: shorten the message by " +
            count_of(request.message().size() - way_out.message_bytes, "byte") +
            (farther.empty() ? "" : ", or " + farther);

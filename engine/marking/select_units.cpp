@@ -10,9 +10,10 @@ namespace {
 
 // Returns the least cost of every unit over a sample of the words.
 std::vector<float> cheapest_costs(const BoundScheme& scheme, const UnitSet& units,
-                                  std::span<const Word> words) {
+                                  std::span<const Word> words, bool is_spread) {
   std::vector<Word> probes;
-  const std::size_t step = (words.size() + kProbeWords - 1) / kProbeWords;
+  // units that carry a spread message have a word each
+  const std::size_t step = is_spread ? 1 : (words.size() + kProbeWords - 1) / kProbeWords;
   for (std::size_t i = 0; i < words.size(); i += step) probes.push_back(words[i]);
   std::vector<std::uint32_t> all(units.size());
   std::iota(all.begin(), all.end(), 0U);
@@ -56,7 +57,8 @@ Capacity find_capacity(const Surface& surface, const BoundScheme& scheme,
   Capacity capacity;
   capacity.units = scheme.find_units();
   if (dropped > 0 && capacity.units.size() > 0) {
-    const std::vector<float> costs = cheapest_costs(scheme, capacity.units, words);
+    const std::vector<float> costs =
+        cheapest_costs(scheme, capacity.units, words, options.format.is_spread);
     capacity.units = without_dearest(capacity.units, costs, dropped);
   }
   const Conflicts conflicts(capacity.units.moved, capacity.units.read_or_moved(),

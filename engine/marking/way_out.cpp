@@ -31,7 +31,7 @@ void find_length(const MarkTask& task, const Message& message, MarkStages& stage
   };
   std::size_t too_many = message.size();
   const std::uint32_t units = stages.marking().units_valid;
-  while (too_many > 1 && parts_for(task.options.format, too_many - 1) > units) --too_many;
+  while (too_many > 1 && least_units_for(task.options.format, too_many - 1) > units) --too_many;
   std::size_t bytes = too_many - 1;
   while (bytes > 0 && !fits(bytes)) {
     too_many = bytes;
@@ -77,9 +77,11 @@ double rounded_up(double value) {
 WayOut way_out_of_too_small(const MarkTask& task, MarkStages& stages) {
   WayOut way_out;
   const Marking& marking = stages.marking();
-  const bool has_units = !marking.words.empty() && marking.units_valid >= marking.words.size();
+  const bool has_units = !marking.words.empty() && marking.units_valid >= marking.parts_needed;
   const bool has_cap = task.options.max_move_percent.value_or(0) > 0;
-  if (has_units && stages.is_limited()) find_max_move(stages, way_out);
+  // a spread message needs no part in particular, and so no move
+  const bool needs_moves = !task.options.format.is_spread && stages.is_limited();
+  if (has_units && needs_moves) find_max_move(stages, way_out);
   if (has_cap && way_out.max_move_percent > 0) return way_out;
   if (const auto* message = std::get_if<Message>(&task.payload)) {
     find_length(task, *message, stages, way_out);

@@ -75,6 +75,10 @@ class ChaseDecoder {
 }  // namespace
 
 Decoded decode(const Votes& votes, const WordCode& code, int doubtful) {
+  if (code.format().is_spread) {
+    return {code.spread_message_of(votes.balances()),
+            std::ldexp(static_cast<double>(kMaxSpreadBytes), -32)};
+  }
   ChaseDecoder decoder(votes, code);
   Decoded decoded{decoder.best(), std::ldexp(1.0, doubtful - 32)};
   if (!decoded.message && doubtful > 0) decoded.message = decoder.vary(doubtful);

@@ -19,7 +19,8 @@ struct Decoded {
 // Returns the message that the best value of every part gives. If its tag is wrong, tries all
 // 2^doubtful ways of replacing the best value by the second best in `doubtful` parts: first those
 // that hold the length, then those whose two scores are closest. Precondition: 0 <= doubtful <= 16.
-// O(2^doubtful * message).
+// O(2^doubtful * message). Of a spread message, the one of each length that agrees best with all
+// votes is tried, and `doubtful` has no effect.
 // This work is based on:
 // Chase. A class of algorithms for decoding block codes with channel measurement information. IEEE
 // Transactions on Information Theory 18 (1972).

@@ -73,6 +73,12 @@ std::vector<std::optional<std::uint32_t>> Votes::parts() const {
   return decided;
 }
 
+std::vector<double> Votes::balances() const {
+  std::vector<double> sums;
+  for (const Bit& tally : bits_) sums.push_back(tally.set - tally.clear);
+  return sums;
+}
+
 double Votes::agreement(std::uint32_t part_index) const {
   const auto part_bits = static_cast<std::size_t>(code_->format().part_bits);
   double least = 1;

@@ -44,6 +44,10 @@ class Votes {
   // Returns the best value of each part; nothing where no unit voted.
   [[nodiscard]] std::vector<std::optional<std::uint32_t>> parts() const;
 
+  // Returns the sums of the votes on the bits of every part, part_bits of each: for set less
+  // against.
+  [[nodiscard]] std::vector<double> balances() const;
+
   // Returns the agreement of the votes on one part, from 0 (tied, or none) to 1 (unanimous): the
   // minimum over its bits of |for - against| / (for + against).
   [[nodiscard]] double agreement(std::uint32_t part_index) const;

@@ -1,9 +1,12 @@
 #include "engine/message/words.h"
 
+#include <bit>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
 #include "engine/base/error.h"
+#include "engine/message/spread.h"
 
 namespace triglyph {
 namespace {
@@ -11,6 +14,9 @@ namespace {
 constexpr std::size_t kOffsets = 16;  // more invariants than a unit of any scheme has
 constexpr std::size_t kLengthBits = 8;
 constexpr std::size_t kTagBits = 32;
+// Bits that units must hold over those of a spread payload: random ones determine it, but not those
+// of two units that share a subscript, and places without a mark add wrong ones.
+constexpr double kSurplus = 1.6;
 
 std::uint32_t low_bits(int count) {
   return static_cast<std::uint32_t>((std::uint64_t{1} << count) - 1);
@@ -23,6 +29,13 @@ std::vector<std::uint32_t> stream_words(const Key& key, KeyUse use, std::size_t 
     words[i / 4] |= std::uint32_t{bytes[i]} << (8 * (i % 4));
   }
   return words;
+}
+
+// The message and its tag, without a length: readers know what length they try.
+std::vector<std::uint8_t> spread_payload(std::span<const std::uint8_t> message, std::uint32_t tag) {
+  std::vector<std::uint8_t> bytes(message.begin(), message.end());
+  for (int i = 0; i < 4; ++i) bytes.push_back(static_cast<std::uint8_t>(tag >> (8 * i)));
+  return bytes;
 }
 
 // Fisher-Yates; the 64-bit product maps a 32-bit word to [0, i] with negligible bias.
@@ -64,15 +77,27 @@ void validate(const WordFormat& format) {
 }
 
 std::uint32_t parts_for(const WordFormat& format, std::size_t message_bytes) {
+  if (format.is_spread) return 1U << format.subscript_bits;
   const std::size_t bits = kLengthBits + 8 * message_bytes + kTagBits;
   const auto part_bits = static_cast<std::size_t>(format.part_bits);
   return static_cast<std::uint32_t>((bits + part_bits - 1) / part_bits);
+}
+
+std::uint32_t least_units_for(const WordFormat& format, std::size_t message_bytes) {
+  if (!format.is_spread) return parts_for(format, message_bytes);
+  const auto bits = static_cast<double>(8 * message_bytes + kTagBits);
+  return static_cast<std::uint32_t>(std::ceil(kSurplus * bits / format.part_bits));
 }
 
 void check_message(const WordFormat& format, std::size_t message_bytes) {
   if (message_bytes < kMinMessageBytes || message_bytes > kMaxMessageBytes) {
     throw Error(ErrorCode::Usage, {}, "",
                 "a message has 1 to 256 bytes, not " + std::to_string(message_bytes));
+  }
+  if (format.is_spread && message_bytes > kMaxSpreadBytes) {
+    throw Error(ErrorCode::Usage, {}, "",
+                "a message in this encoding has 1 to " + std::to_string(kMaxSpreadBytes) +
+                    " bytes, not " + std::to_string(message_bytes));
   }
   const std::uint32_t parts = parts_for(format, message_bytes);
   const std::uint32_t most = 1U << format.subscript_bits;
@@ -95,6 +120,7 @@ WordCode::WordCode(const Key& key, const WordFormat& format) : key_(key), format
   inverse_.resize(capacity());
   for (std::uint32_t part = 0; part < capacity(); ++part) inverse_[permutation_[part]] = part;
   keystream_ = stream_words(key, KeyUse::Keystream, capacity());
+  row_seed_ = std::bit_cast<std::uint64_t>(offset(3));
 }
 
 std::uint32_t WordCode::whiten(std::uint32_t part, std::uint32_t index) const {
@@ -103,6 +129,7 @@ std::uint32_t WordCode::whiten(std::uint32_t part, std::uint32_t index) const {
 
 std::vector<Word> WordCode::words_of(std::span<const std::uint8_t> message) const {
   check_message(format_, message.size());
+  if (format_.is_spread) return spread_words_of(message);
   const std::uint32_t parts = parts_for(format_, message.size());
   const std::vector<std::uint8_t> payload = payload_bytes(message, key_.tag(message));
   const auto part_bits = static_cast<std::size_t>(format_.part_bits);
@@ -115,6 +142,40 @@ std::vector<Word> WordCode::words_of(std::span<const std::uint8_t> message) cons
     words[index] = {permutation_[index], whiten(part, index)};
   }
   return words;
+}
+
+std::vector<Word> WordCode::spread_words_of(std::span<const std::uint8_t> message) const {
+  const SpreadCode code(row_seed_, 8 * message.size() + kTagBits);
+  const std::vector<std::uint8_t> payload = spread_payload(message, key_.tag(message));
+  const auto part_bits = static_cast<std::uint32_t>(format_.part_bits);
+  std::vector<Word> words(capacity());
+  for (std::uint32_t index = 0; index < words.size(); ++index) {
+    std::uint32_t part = 0;
+    for (std::uint32_t bit = 0; bit < part_bits; ++bit) {
+      if (code.parity(payload, index * part_bits + bit)) part |= 1U << bit;
+    }
+    words[index] = {permutation_[index], whiten(part, index)};
+  }
+  return words;
+}
+
+std::optional<Message> WordCode::spread_message_of(std::span<const double> balances) const {
+  const auto part_bits = static_cast<std::uint32_t>(format_.part_bits);
+  std::vector<SoftParity> parities;
+  for (std::uint32_t row = 0; row < balances.size(); ++row) {
+    if (balances[row] == 0) continue;
+    const bool is_flipped = (keystream_[row / part_bits] >> (row % part_bits) & 1) != 0;
+    parities.push_back({row, is_flipped ? -balances[row] : balances[row]});
+  }
+  for (std::size_t bytes = kMinMessageBytes; bytes <= kMaxSpreadBytes; ++bytes) {
+    const std::size_t bits = 8 * bytes + kTagBits;
+    if (parities.size() < bits) break;
+    const std::vector<std::uint8_t> payload = SpreadCode(row_seed_, bits).decode(parities);
+    const auto end = payload.begin() + static_cast<std::ptrdiff_t>(bytes);
+    const Message message(payload.begin(), end);
+    if (payload == spread_payload(message, key_.tag(message))) return message;
+  }
+  return std::nullopt;
 }
 
 std::vector<Word> WordCode::fill_words(std::uint32_t parts) const {

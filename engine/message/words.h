@@ -18,12 +18,15 @@ using Message = std::vector<std::uint8_t>;
 
 inline constexpr std::size_t kMinMessageBytes = 1;
 inline constexpr std::size_t kMaxMessageBytes = 256;
+inline constexpr std::size_t kMaxSpreadBytes = 16;  // of a spread message: readers try every length
 
 // The numbers of bits that one unit carries.
 struct WordFormat {
   int marker_bits = 6;     // m
   int subscript_bits = 8;  // s: at most 2^s parts
   int part_bits = 9;       // w
+  // Every word carries parities of the whole payload (spread.h) instead of one of its parts.
+  bool is_spread = false;
 
   bool operator==(const WordFormat&) const = default;
 };
@@ -32,10 +35,15 @@ struct WordFormat {
 void validate(const WordFormat& format);
 
 // Returns the number of parts of a message,
-// ceil((8 + 8 * bytes + 32) / w).
+// ceil((8 + 8 * bytes + 32) / w); or 2^s if it is spread.
 [[nodiscard]] std::uint32_t parts_for(const WordFormat& format, std::size_t message_bytes);
 
-// Throws Error Usage if a message does not have 1 to 256 bytes, or needs more than 2^s parts.
+// Returns the number of units without which a mesh cannot carry a message: one a part; or if it is
+// spread, those that hold a quarter more bits than message and tag.
+[[nodiscard]] std::uint32_t least_units_for(const WordFormat& format, std::size_t message_bytes);
+
+// Throws Error Usage if a message does not have 1 to 256 bytes, or 16 if it is spread, or needs
+// more than 2^s parts.
 // Precondition: the format is valid.
 void check_message(const WordFormat& format, std::size_t message_bytes);
 
@@ -73,6 +81,12 @@ class WordCode {
     return inverse_[subscript];
   }
 
+  // Returns the message whose parities agree best with the votes on the bits: `balances` holds w
+  // sums of votes for each part, above 0 where the bit is set and 0 where nothing is known. Tries
+  // each length; nothing if no tag is right. Precondition: the format is spread. Some tens of
+  // milliseconds.
+  [[nodiscard]] std::optional<Message> spread_message_of(std::span<const double> balances) const;
+
   // Returns the number of parts of the message that starts with these parts, according to its
   // length byte; nothing if a part that holds a bit of the length is missing.
   [[nodiscard]] std::optional<std::uint32_t> parts_wanted(
@@ -87,6 +101,7 @@ class WordCode {
   [[nodiscard]] std::optional<std::uint8_t> byte_of(
       std::span<const std::optional<std::uint32_t>> parts, std::size_t byte) const;
   [[nodiscard]] std::uint32_t whiten(std::uint32_t part, std::uint32_t index) const;
+  [[nodiscard]] std::vector<Word> spread_words_of(std::span<const std::uint8_t> message) const;
 
   Key key_;
   WordFormat format_;
@@ -95,6 +110,7 @@ class WordCode {
   std::vector<std::uint32_t> permutation_;  // part -> subscript
   std::vector<std::uint32_t> inverse_;      // subscript -> part
   std::vector<std::uint32_t> keystream_;    // one word per part
+  std::uint64_t row_seed_ = 0;              // of the parities
 };
 
 }  // namespace triglyph

@@ -7,6 +7,7 @@
 #include "engine/mesh/edge_length.h"
 #include "engine/scheme/aie/aie.h"
 #include "engine/scheme/iie/iie.h"
+#include "engine/scheme/iie/local_iie.h"
 #include "engine/scheme/tsq/tsq.h"
 
 namespace triglyph {
@@ -36,9 +37,29 @@ std::unique_ptr<Scheme> make(const WordCode& code, const OptionValues& values, C
   return std::make_unique<Kind>(code, options);
 }
 
-template <typename Kind, typename Options>
-SchemeInfo info_of(std::string_view name) {
-  SchemeInfo info{name, {}, defaults_of<Options>, make<Kind, Options>};
+std::unique_ptr<Scheme> make_iie(const WordCode& code, const OptionValues& values,
+                                 CostFunction cost) {
+  IieOptions options = IieOptions::defaults(false);
+  apply_options(table_of<IieOptions>(), values, options);
+  options.cost = cost;
+  if (options.encoding == IieEncoding::Global) return std::make_unique<IieScheme>(code, options);
+  return std::make_unique<LocalIieScheme>(code, options);
+}
+
+std::vector<SchemeDefaults> none_older() {
+  return {};
+}
+
+std::vector<SchemeDefaults> older_iie() {
+  return {{IieOptions::kFirstFormat,
+           option_values(table_of<IieOptions>(), IieOptions::first_generation()),
+           IieOptions::kHasFewUnits}};
+}
+
+template <typename Options>
+SchemeInfo info_of(std::string_view name, decltype(SchemeInfo::make) make,
+                   decltype(SchemeInfo::older) older = none_older) {
+  SchemeInfo info{name, {}, defaults_of<Options>, older, make};
   for (const Option<Options>& option : table_of<Options>()) info.options.push_back(option.spec);
   return info;
 }
@@ -48,8 +69,9 @@ constexpr std::array<std::string_view, 3> kNames = {"tsq", "aie", "iie"};
 
 const std::array<SchemeInfo, kNames.size()>& schemes() {
   static const std::array<SchemeInfo, kNames.size()> all = {
-      info_of<TsqScheme, TsqOptions>(kNames[0]), info_of<AieScheme, AieOptions>(kNames[1]),
-      info_of<IieScheme, IieOptions>(kNames[2])};
+      info_of<TsqOptions>(kNames[0], make<TsqScheme, TsqOptions>),
+      info_of<AieOptions>(kNames[1], make<AieScheme, AieOptions>),
+      info_of<IieOptions>(kNames[2], make_iie, older_iie)};
   return all;
 }
 
@@ -91,6 +113,12 @@ double number_in(const OptionValues& values, std::string_view key, double otherw
 
 int doubtful_parts(const OptionValues& options) {
   return static_cast<int>(number_in(options, "doubtful_parts", 0));
+}
+
+bool is_spread(std::string_view scheme, const OptionValues& options) {
+  const auto encoding = options.find("iie_encoding");
+  return scheme == "iie" && encoding != options.end() &&
+         encoding->second == OptionValue(std::string(kIieEncodingNames[1]));
 }
 
 OptionValues fixed_for(const Mesh& mesh, OptionValues options) {

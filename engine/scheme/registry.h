@@ -30,6 +30,9 @@ struct SchemeInfo {
   std::string_view name;
   std::vector<OptionSpec> options;
   SchemeDefaults (*defaults)(bool fill);
+  // Returns the defaults for a message of older generations, newest first; an option that only
+  // newer ones know has the value that means the same.
+  std::vector<SchemeDefaults> (*older)();
   // Makes the scheme; options that are not named take their defaults for a message. Throws Error
   // Usage for options out of range or a word that does not fit a unit.
   std::unique_ptr<Scheme> (*make)(const WordCode& code, const OptionValues& options,
@@ -54,6 +57,9 @@ struct SchemeInfo {
 // Returns the number of parts whose second best value a reader tries; 0 for schemes without that
 // option.
 [[nodiscard]] int doubtful_parts(const OptionValues& options);
+
+// Says whether words carry parities of the message under these options of a scheme.
+[[nodiscard]] bool is_spread(std::string_view scheme, const OptionValues& options);
 
 // Returns the options with the sizes that are relative to the mesh made absolute, so that they
 // mean the same for the marked mesh to the last bit. O(triangles).

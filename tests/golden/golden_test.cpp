@@ -40,6 +40,10 @@ constexpr GoldenMark kGoldenMarks[] = {
     {"iie-radius.ply", "--scheme iie --radius 0.28", "72"},
     {"flux-text.off", "", "6f6b"},
     {"owner.stl", "--scheme tsq --key-file owner.key", "6d696e65"},
+    // generation 2
+    {"iie-local.off", "", "6c"},
+    {"iie-local.ply", "", "00ff01"},
+    {"iie-local-wide.obj", "--scheme iie --step 0.004 --site-rings 6 --part-bits 2", "77"},
 };
 
 struct GoldenRecords {
@@ -50,6 +54,7 @@ struct GoldenRecords {
 constexpr GoldenRecords kGoldenRecords[] = {
     {"records.jsonl", ""},
     {"flux-records.jsonl", ""},
+    {"records-2.jsonl", ""},
     {"owner-records.jsonl", "--key-file owner.key"},
 };
 

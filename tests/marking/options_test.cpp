@@ -90,17 +90,33 @@ TEST(MarkOptions, OptionsOfAnotherSchemeContradictTheSchemeInUse) {
 
 TEST(MarkOptions, AReaderThatIsToldNothingTriesEveryScheme) {
   const std::vector<Encoding> all = encodings_of({});
-  // flux comes after the scheme that is the quickest to read
-  ASSERT_EQ(all.size(), scheme_names().size() + 1);
+  // flux comes after the scheme that is the quickest to read, older generations of iie at the end
+  ASSERT_EQ(all.size(), scheme_names().size() + 2);
   EXPECT_EQ(all[1].scheme, kFluxScheme);
   for (std::size_t i = 0; i < scheme_names().size(); ++i) {
     EXPECT_EQ(all[i == 0 ? 0 : i + 1], default_mark_options(scheme_names()[i], false).encoding());
   }
-  const std::vector<Encoding> one = encodings_of({{"scheme", std::string("iie")}});
-  ASSERT_EQ(one.size(), 1U);
-  EXPECT_EQ(one[0].scheme, "iie");
+  const std::vector<Encoding> iie = encodings_of({{"scheme", std::string("iie")}});
+  EXPECT_EQ(iie, std::vector<Encoding>(all.end() - 2, all.end()));
   EXPECT_EQ(encodings_of({{"scheme", std::string("flux")}}).size(), 1U);
-  EXPECT_EQ(encodings_of({{"scheme", std::string("flux+iie")}}).size(), 2U);
+  EXPECT_EQ(encodings_of({{"scheme", std::string("flux+iie")}}).size(), 3U);
+}
+
+// Old marks first-generation options were recorded for are found without naming the generation.
+TEST(MarkOptions, OptionsOfAReaderApplyToEveryGeneration) {
+  const std::vector<Encoding> both =
+      encodings_of({{"scheme", std::string("iie")}, {"radius", 0.25}});
+  ASSERT_EQ(both.size(), 2U);
+  EXPECT_TRUE(both[0].format.is_spread);
+  EXPECT_EQ(both[1].format, (WordFormat{0, 5, 4}));
+  EXPECT_EQ(both[1].scheme_options.at("step"), OptionValue(0.007));
+  for (const Encoding& encoding : both) {
+    EXPECT_EQ(encoding.scheme_options.at("radius"), OptionValue(0.25));
+  }
+  // and one that is named stands alone
+  EXPECT_EQ(encodings_of({{"scheme", std::string("iie")}, {"iie_encoding", std::string("global")}})
+                .back(),
+            encodings_of({{"scheme", std::string("iie")}}).back());
 }
 
 TEST(EstimateMemory, KnowsFormatsInAnyCaseAndTheCostsOfFill) {

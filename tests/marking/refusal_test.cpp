@@ -10,6 +10,7 @@ Marking failed(MarkStatus status, const WayOut& way_out) {
   Marking marking;
   marking.status = status;
   marking.words.resize(12);
+  marking.parts_needed = 12;
   marking.units_valid = 20;
   marking.parts_carried = 9;
   marking.way_out = way_out;

@@ -16,30 +16,46 @@
 namespace triglyph {
 namespace {
 
+// As many words as a test wants; where a place fixes the subscript, one of each.
+std::vector<Word> words_of(const WordCode& code, std::uint32_t count) {
+  return code.fill_words(code.format().is_spread ? code.capacity()
+                                                 : std::min(code.capacity(), count));
+}
+
+// The schemes by name, and the encoding of iie that the first generation and fill use.
+constexpr std::string_view kGlobalIie = "iie_global";
+constexpr std::array<std::string_view, 4> kSchemes = {"tsq", "aie", "iie", kGlobalIie};
+
 class EveryScheme : public testing::TestWithParam<std::string_view> {
  protected:
-  // Every place is a candidate, sizes are fixed: what is embedded is read to the last bit.
-  [[nodiscard]] std::unique_ptr<Scheme> scheme(CostFunction cost = {}) const {
-    return make_scheme(GetParam(), code_, fixed_for(test::bumpy_ball().mesh, relative_), cost);
-  }
-  [[nodiscard]] std::unique_ptr<Scheme> relative_scheme() const {
-    return make_scheme(std::string(GetParam()), code_, relative_);
+  static std::string name() { return GetParam() == kGlobalIie ? "iie" : std::string(GetParam()); }
+  static bool is_iie() { return name() == "iie"; }
+  static SchemeDefaults defaults() {
+    if (GetParam() == kGlobalIie) return scheme_info("iie").older().at(0);
+    return scheme_info(name()).defaults(false);
   }
 
-  static OptionValues options_of(std::string_view name) {
-    OptionValues options = scheme_info(name).defaults(false).options;
-    if (name != "iie") return options;
+  // Every place is a candidate, sizes are fixed: what is embedded is read to the last bit.
+  [[nodiscard]] std::unique_ptr<Scheme> scheme(CostFunction cost = {}) const {
+    return make_scheme(name(), code_, fixed_for(test::bumpy_ball().mesh, relative_), cost);
+  }
+  [[nodiscard]] std::unique_ptr<Scheme> relative_scheme() const {
+    return make_scheme(name(), code_, relative_);
+  }
+
+  static OptionValues every_place() {
+    OptionValues options = defaults().options;
+    if (!is_iie()) return options;
     options["radius_edges"] = 3.5;
     options["site_rings"] = std::int64_t{0};
     return options;
   }
 
-  OptionValues relative_ = options_of(GetParam());
-  WordCode code_{Key::trial(), scheme_info(GetParam()).defaults(false).format};
-  double cost_precision_ = GetParam() == "iie" ? 0.02 : 1e-5;  // see IieScheme::costs
+  OptionValues relative_ = every_place();
+  WordCode code_{Key::trial(), defaults().format};
+  double cost_precision_ = is_iie() ? 0.02 : 1e-5;  // see IieScheme::costs
 };
-INSTANTIATE_TEST_SUITE_P(All, EveryScheme,
-                         testing::ValuesIn(scheme_names().begin(), scheme_names().end()),
+INSTANTIATE_TEST_SUITE_P(All, EveryScheme, testing::ValuesIn(kSchemes),
                          [](const auto& scheme) { return std::string(scheme.param); });
 
 struct Chosen {
@@ -94,7 +110,7 @@ TEST_P(EveryScheme, EveryPlacedWordIsReadBackAtItsAnchor) {
   const auto scheme = this->scheme();
   const auto bound = scheme->bind(ball.surface());
   const Chosen chosen = choose(*bound, ball.surface());
-  const auto words = code_.fill_words(std::min(code_.capacity(), 256U));
+  const auto words = words_of(code_, 256);
   const auto placements = random_placements(*bound, chosen, words);
   const Embedding embedding = bound->embed(chosen.units, placements, words);
   const Mesh marked{embedding.positions, ball.mesh.triangles};
@@ -114,12 +130,12 @@ TEST_P(EveryScheme, EveryPlacedWordIsReadBackAtItsAnchor) {
     exact += at->worst_offset < 1e-4 && at->weight > 0.999 ? 1 : 0;
   }
   // a unit of iie may see a sheet move that it did not see before it moved itself
-  EXPECT_GE(exact * 100, placements.size() * (GetParam() == "iie" ? 90 : 100));
+  EXPECT_GE(exact * 100, placements.size() * (is_iie() ? 90 : 100));
 }
 
 TEST_P(EveryScheme, CostIsTheMoveOfTheUnit) {
   const auto& ball = test::bumpy_ball();
-  const auto words = code_.fill_words(std::min(code_.capacity(), 64U));
+  const auto words = words_of(code_, 64);
   for (const CostFunction cost : {CostFunction::Displacement, CostFunction::Rms}) {
     const auto scheme = this->scheme(cost);
     const auto bound = scheme->bind(ball.surface());
@@ -149,7 +165,7 @@ TEST_P(EveryScheme, CostIsTheMoveOfTheUnit) {
 // The surface moves at most as far as its points, and where no point moves nothing changes.
 TEST_P(EveryScheme, HausdorffCostIsAtMostTheFarthestMove) {
   const auto& ball = test::bumpy_ball();
-  const auto words = code_.fill_words(std::min(code_.capacity(), 16U));
+  const auto words = words_of(code_, 16);
   const auto matrix = [&](CostFunction function) {
     const auto scheme = this->scheme(function);
     const auto bound = scheme->bind(ball.surface());
@@ -171,7 +187,7 @@ TEST_P(EveryScheme, HausdorffCostIsAtMostTheFarthestMove) {
     below += hausdorff[i] < 0.99F * farthest[i] ? 1 : 0;
   }
   // iie moves along the normal, where nothing is free
-  EXPECT_GT(below, GetParam() == "iie" ? 0 : farthest.size() / 10);
+  EXPECT_GT(below, is_iie() ? 0 : farthest.size() / 10);
 }
 
 TEST_P(EveryScheme, ReadsTheSameUnderAnySimilarityAndOrder) {
@@ -179,7 +195,7 @@ TEST_P(EveryScheme, ReadsTheSameUnderAnySimilarityAndOrder) {
   const auto scheme = relative_scheme();
   const auto bound = scheme->bind(ball.surface());
   const Chosen chosen = choose(*bound, ball.surface());
-  const auto words = code_.fill_words(std::min(code_.capacity(), 256U));
+  const auto words = words_of(code_, 256);
   const Embedding embedding =
       bound->embed(chosen.units, random_placements(*bound, chosen, words), words);
   const auto good_words = [&](const Mesh& mesh) {
@@ -227,7 +243,7 @@ TEST_P(EveryScheme, DegenerateTrianglesAreNeitherUnitsNorTrouble) {
     }
     std::vector<std::uint32_t> all(units.size());
     std::iota(all.begin(), all.end(), 0U);
-    const auto words = code_.fill_words(4);
+    const auto words = words_of(code_, 4);
     for (const float cost : bound->costs(units, all, words).values) {
       EXPECT_FALSE(std::isnan(cost));
     }
@@ -236,7 +252,7 @@ TEST_P(EveryScheme, DegenerateTrianglesAreNeitherUnitsNorTrouble) {
 
 TEST_P(EveryScheme, ResultsDoNotDependOnThreads) {
   const auto& ball = test::bumpy_ball();
-  const auto words = code_.fill_words(std::min(code_.capacity(), 100U));
+  const auto words = words_of(code_, 100);
   const auto scheme = this->scheme();
   test::expect_same_for_any_threads([&] {
     const auto bound = scheme->bind(ball.surface());
@@ -259,7 +275,7 @@ bool same(std::span<const Reading> a, std::span<const Reading> b) {
 // Of the ball's units, each with a word that it can carry.
 Embedding embed_randomly(const BoundScheme& bound, const WordCode& code) {
   const Chosen chosen = choose(bound, test::bumpy_ball().surface());
-  const auto words = code.fill_words(std::min(code.capacity(), 100U));
+  const auto words = words_of(code, 100);
   return bound.embed(chosen.units, random_placements(bound, chosen, words), words);
 }
 
@@ -288,7 +304,7 @@ TEST_P(EveryScheme, ReadAtFindsWhatReadFindsThere) {
     const auto scheme = relative_scheme();
     const auto bound = scheme->bind(solid.surface());
     const Chosen chosen = choose(*bound, solid.surface());
-    const auto words = code_.fill_words(std::min(code_.capacity(), 100U));
+    const auto words = words_of(code_, 100);
     const auto placements = random_placements(*bound, chosen, words);
     const Mesh marked{bound->embed(chosen.units, placements, words).positions,
                       solid.mesh.triangles};
@@ -326,7 +342,7 @@ TEST_P(EveryScheme, CallsCanBeRepeated) {
   const auto& ball = test::bumpy_ball();
   const auto scheme = relative_scheme();
   const auto bound = scheme->bind(ball.surface());
-  const auto words = code_.fill_words(std::min(code_.capacity(), 100U));
+  const auto words = words_of(code_, 100);
   const Chosen chosen = choose(*bound, ball.surface());
   const auto placements = random_placements(*bound, chosen, words);
   const Embedding first = bound->embed(chosen.units, placements, words);
@@ -344,7 +360,7 @@ TEST_P(EveryScheme, CallsCanBeRepeated) {
 
 TEST_P(EveryScheme, RefusesCellsWithoutWidth) {
   for (const double step : {0.0, -1.0, 10.0, std::nan("")}) {
-    EXPECT_THROW((void)make_scheme(GetParam(), code_, {{"step", step}}), Error) << step;
+    EXPECT_THROW((void)make_scheme(name(), code_, {{"step", step}}), Error) << step;
   }
 }
 
@@ -355,9 +371,9 @@ TEST(Schemes, HaveNames) {
 // What applies is written down whole, so that a record says all that a reader needs.
 TEST_P(EveryScheme, DefaultsNameEveryOption) {
   for (const bool fill : {false, true}) {
-    const OptionValues values = scheme_info(GetParam()).defaults(fill).options;
-    EXPECT_EQ(values.size(), scheme_info(GetParam()).options.size());
-    for (const OptionSpec& spec : scheme_info(GetParam()).options) {
+    const OptionValues values = scheme_info(name()).defaults(fill).options;
+    EXPECT_EQ(values.size(), scheme_info(name()).options.size());
+    for (const OptionSpec& spec : scheme_info(name()).options) {
       ASSERT_TRUE(values.contains(spec.key)) << spec.key;
       EXPECT_EQ(spec.checked(values.at(spec.key)), values.at(spec.key)) << spec.key;
     }

@@ -166,23 +166,12 @@ IieScheme::IieScheme(const WordCode& code, const IieOptions& options)
               code.offset(1)),
       site_seed_(std::bit_cast<std::uint64_t>(code.offset(2))) {
   const WordFormat& format = code.format();
-  const auto refuse = [](const char* what) { throw Error(ErrorCode::Usage, {}, "", what); };
   if (format.marker_bits + format.subscript_bits > kMaxQuantiserBits ||
       format.part_bits > kMaxQuantiserBits) {
-    refuse("iie holds 16 bits of marker and subscript, and 16 of the part");
+    throw Error(ErrorCode::Usage, {}, "",
+                "iie holds 16 bits of marker and subscript, and 16 of the part");
   }
-  if (!(options.step > 0 && options.step <= 0.25)) {
-    refuse("the cell width of iie lies above 0 and up to 0.25");
-  }
-  if (!(options.radius_edges >= 2 && options.radius_edges <= 100)) {
-    refuse("the radius of iie is 2 to 100 mean edges");
-  }
-  if (options.centre_rings < 1 || options.centre_rings > 3) {
-    refuse("the centres of iie are means over 1 to 3 rings");
-  }
-  if (!(options.radius >= 0) || options.site_rings < 0 || options.site_rings > 8) {
-    refuse("iie wants a radius of at least 0 and 0 to 8 rings between sites");
-  }
+  options.check();
 }
 
 std::unique_ptr<BoundScheme> IieScheme::bind(const Surface& surface) const {

@@ -1,4 +1,5 @@
-// IIE, the noise-robust scheme: a unit is a ball about a place on the surface. The share of its
+// IIE, the noise-robust scheme, in its global encoding: that of fill and of the first generation of
+// marks; messages use local_iie.h. A unit is a ball about a place on the surface. The share of its
 // sphere that lies inside the surface carries marker and subscript, the share of its volume the
 // part.
 //

@@ -13,7 +13,9 @@ constexpr std::size_t kPointsPerTask = 1024;
 std::vector<std::uint64_t> refine(const Halfedges& halfedges,
                                   const std::vector<std::uint64_t>& colours, RingOrder order) {
   const auto pair = [order](std::uint64_t one, std::uint64_t next) {
-    return order == RingOrder::AsIs ? random_bits(one, 0, next) : random_bits(next, 0, one);
+    const std::uint64_t there = order != RingOrder::TurnedOver ? random_bits(one, 0, next) : 0;
+    const std::uint64_t back = order != RingOrder::AsIs ? random_bits(next, 0, one) : 0;
+    return there + back;
   };
   std::vector<std::uint64_t> refined(colours.size(), 0);
   parallel_for(
@@ -39,7 +41,7 @@ std::vector<std::uint64_t> refine(const Halfedges& halfedges,
 }  // namespace
 
 std::vector<std::uint64_t> ring_signatures(const Halfedges& halfedges, std::size_t points,
-                                           std::uint64_t seed, RingOrder order) {
+                                           std::uint64_t seed, RingOrder order, int rings) {
   std::vector<std::uint64_t> colours(points, 0);
   parallel_for(
       points,
@@ -51,7 +53,8 @@ std::vector<std::uint64_t> ring_signatures(const Halfedges& halfedges, std::size
       },
       kPointsPerTask);
   for (const std::uint32_t copied : halfedges.copied_points()) colours[copied] = 0;
-  return refine(halfedges, refine(halfedges, colours, order), order);
+  for (int ring = 0; ring < rings; ++ring) colours = refine(halfedges, colours, order);
+  return colours;
 }
 
 }  // namespace triglyph

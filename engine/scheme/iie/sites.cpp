@@ -1,9 +1,40 @@
 #include "engine/scheme/iie/sites.h"
 
+#include <algorithm>
+
 #include "engine/base/parallel.h"
 
 namespace triglyph {
 namespace {
+
+// Rings of a signature that tells places apart also where most points have six neighbours.
+constexpr int kScatteredRings = 4;
+// A few points of one signature are the two sides of a symmetric shape, or copies of a part.
+constexpr std::size_t kMostAlike = 8;
+
+struct Signed {
+  std::uint64_t signature;
+  std::uint32_t point;
+};
+
+// The points that have a signature that few share, by descending signature.
+std::vector<Signed> ranked_points(const std::vector<std::uint64_t>& signatures) {
+  std::vector<Signed> all;
+  for (std::uint32_t i = 0; i < signatures.size(); ++i) {
+    if (signatures[i] != 0) all.push_back({signatures[i], i});
+  }
+  parallel_sort(all.begin(), all.end(), [](const Signed& a, const Signed& b) {
+    return a.signature != b.signature ? a.signature > b.signature : a.point < b.point;
+  });
+  std::vector<Signed> ranked;
+  for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {
+    while (end < all.size() && all[end].signature == all[begin].signature) ++end;
+    if (end - begin > kMostAlike) continue;
+    ranked.insert(ranked.end(), all.begin() + static_cast<std::ptrdiff_t>(begin),
+                  all.begin() + static_cast<std::ptrdiff_t>(end));
+  }
+  return ranked;
+}
 
 std::vector<char> triangles_at_boundary(const Halfedges& halfedges) {
   std::vector<char> at_boundary(halfedges.face_count(), 0);
@@ -43,6 +74,46 @@ IieSites find_sites(const Halfedges& halfedges, std::size_t points, int rings, s
         const auto point = static_cast<std::uint32_t>(i);
         if (is_site(point)) out.push_back(point);
       });
+  for (const std::uint32_t point : sites.points) sites.signatures.push_back(signatures[point]);
+  sites.at_boundary = triangles_at_boundary(halfedges);
+  return sites;
+}
+
+IieSites scatter_sites(const Halfedges& halfedges, std::size_t points, int rings,
+                       std::uint64_t seed) {
+  const std::vector<Signed> ranked =
+      ranked_points(ring_signatures(halfedges, points, seed, RingOrder::Either, kScatteredRings));
+  std::vector<Signed> chosen;
+  std::vector<char> is_taken(points, 0);
+  // the site whose rings were walked last through each point
+  std::vector<std::uint32_t> seen_from(points, 0xffffffff);
+  std::vector<std::uint32_t> last, next;
+  for (const Signed& candidate : ranked) {
+    if (is_taken[candidate.point] != 0) continue;
+    chosen.push_back(candidate);
+    is_taken[candidate.point] = 1;
+    seen_from[candidate.point] = candidate.point;
+    last.assign(1, candidate.point);
+    for (int ring = 0; ring < rings; ++ring) {
+      next.clear();
+      for (const std::uint32_t from : last) {
+        visit_ring(halfedges, from, [&](std::uint32_t other) {
+          if (seen_from[other] == candidate.point) return;
+          seen_from[other] = candidate.point;
+          is_taken[other] = 1;
+          next.push_back(other);
+        });
+      }
+      std::swap(last, next);
+    }
+  }
+  std::sort(chosen.begin(), chosen.end(),
+            [](const Signed& a, const Signed& b) { return a.point < b.point; });
+  IieSites sites;
+  for (const Signed& site : chosen) {
+    sites.points.push_back(site.point);
+    sites.signatures.push_back(site.signature);
+  }
   sites.at_boundary = triangles_at_boundary(halfedges);
   return sites;
 }

@@ -13,8 +13,9 @@
 namespace triglyph {
 
 struct IieSites {
-  std::vector<std::uint32_t> points;  // that may be anchors, ascending
-  std::vector<char> at_boundary;      // does the triangle have an edge without a neighbour?
+  std::vector<std::uint32_t> points;      // that may be anchors, ascending
+  std::vector<std::uint64_t> signatures;  // theirs
+  std::vector<char> at_boundary;          // does the triangle have an edge without a neighbour?
 };
 
 // Returns the sites of a surface: the points whose keyed ring signature none within `rings` rings
@@ -22,6 +23,15 @@ struct IieSites {
 // Parallel, O(halfedges) and the rings of the few points that beat their neighbours.
 [[nodiscard]] IieSites find_sites(const Halfedges& halfedges, std::size_t points, int rings,
                                   std::uint64_t seed, RingOrder order = RingOrder::AsIs);
+
+// Returns sites no two of which lie within `rings` rings of each other, as many as fit when points
+// are taken in the order of their signatures over four rings, which are those of the mirror image.
+// So far apart, nearly all of them can be units at a time, and a reader finds hardly any that
+// carries no mark. Points of which many share a signature, as on a regular grid, are none: they
+// would all vote for the same. What is done to a mesh changes only the sites near by, but a site
+// more or less may change the next. O(points log points) and the rings of the sites.
+[[nodiscard]] IieSites scatter_sites(const Halfedges& halfedges, std::size_t points, int rings,
+                                     std::uint64_t seed);
 
 // Returns the points within so many rings of a point, itself among them, ascending. Returns nothing
 // once accept(other) returns false for one of them, or if a fan is open. O(n log n) for n points.
