@@ -19,13 +19,13 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 // so that noise on them averages out, and none far outside the ball.
 constexpr int kScaleRings = 2;
 // Of the radius: room for triangles that a bump brings into the ball.
-constexpr double kMargin = 0.04;
+constexpr double kLocalMargin = 0.04;
 // Of the radius: so far the bump reaches.
 constexpr double kReach = 0.85;
 // Of the radius: a bump this high is as steep as one wants to see on no surface.
-constexpr double kMaxHeight = 0.05;
+constexpr double kLocalMaxHeight = 0.05;
 // Regula falsi takes about six steps; this many are used up only where there is no root.
-constexpr int kMaxRefinements = 40;
+constexpr int kLocalMaxRefinements = 40;
 // Of a share: a millionth of a cell, and far above what double precision makes of it.
 constexpr double kSharePrecision = 1e-9;
 
@@ -98,12 +98,12 @@ std::optional<LocalBall> LocalBall::at(const LocalGround& ground, std::uint32_t 
   const Mesh& mesh = ground.surface.mesh;
   const Sphere sphere = sphere_of(*frame, mesh.positions, ground);
   if (!(sphere.edge > 0)) return std::nullopt;
-  const auto near = triangles_about(ground, sphere, kMargin);
+  const auto near = triangles_about(ground, sphere, kLocalMargin);
   if (!near) return std::nullopt;
 
   LocalBall ball;
   ball.ground_ = &ground;
-  ball.max_height_ = kMaxHeight * sphere.radius;
+  ball.max_height_ = kLocalMaxHeight * sphere.radius;
   for (const std::uint32_t t : *near) {
     const Triangle& corners = mesh.triangles[t];
     ball.points_.insert(ball.points_.end(), corners.begin(), corners.end());
@@ -213,7 +213,7 @@ std::optional<double> LocalBall::refined(double planned, double wanted) const {
   if (!(at_low * at_high <= 0)) return std::nullopt;
   double height = planned;
   int same_side = 0;
-  for (int step = 0; step < kMaxRefinements; ++step) {
+  for (int step = 0; step < kLocalMaxRefinements; ++step) {
     const double excess = share(height) - wanted;
     if (!std::isfinite(excess)) return std::nullopt;
     if (std::abs(excess) < kSharePrecision) return height;

@@ -18,9 +18,9 @@ namespace {
 
 // How fast the weight of a reading falls with the distance from its cell's centre: a place without
 // a mark reads as well anywhere in a cell, and one with a mark under much noise nearly so.
-constexpr double kSharpness = 1.5;
-constexpr std::size_t kUnitsPerTask = 4;  // balls are dear, and some far dearer than others
-constexpr int kMaxQuantiserBits = 16;     // of Quantiser
+constexpr double kLocalSharpness = 1.5;
+constexpr std::size_t kLocalUnitsPerTask = 4;  // balls are dear, and some far dearer than others
+constexpr int kLocalMaxQuantiserBits = 16;     // of Quantiser
 
 int cell_bits(const WordFormat& format) {
   return format.marker_bits + format.part_bits;
@@ -80,11 +80,11 @@ LocalIieScheme::LocalIieScheme(const WordCode& code, const IieOptions& options)
     : options_(options),
       format_(code.format()),
       marker_(code.marker()),
-      quantiser_(options.step, std::min(cell_bits(code.format()), kMaxQuantiserBits),
+      quantiser_(options.step, std::min(cell_bits(code.format()), kLocalMaxQuantiserBits),
                  code.offset(0)),
       site_seed_(std::bit_cast<std::uint64_t>(code.offset(2))) {
   const auto refuse = [](const char* what) { throw Error(ErrorCode::Usage, {}, "", what); };
-  if (cell_bits(format_) > kMaxQuantiserBits) {
+  if (cell_bits(format_) > kLocalMaxQuantiserBits) {
     refuse("the local encoding of iie holds 16 bits of marker and part");
   }
   options.check();
@@ -154,7 +154,7 @@ UnitSet LocalIieScheme::Bound::find_units() const {
         if (!ball) return;
         found[i] = {ball->moved(), {ball->points().begin(), ball->points().end()}};
       },
-      kUnitsPerTask);
+      kLocalUnitsPerTask);
   UnitSet units;
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (found[i].moved.empty()) continue;
@@ -212,8 +212,8 @@ void LocalIieScheme::Bound::read_site(std::size_t site, double share,
   reading.anchor = sites_->points[site];
   reading.word = {key.subscript, bits >> format.marker_bits};
   reading.worst_offset = cell.distance;
-  reading.weight =
-      static_cast<float>(std::exp(-kSharpness * double{cell.distance} * double{cell.distance}));
+  reading.weight = static_cast<float>(
+      std::exp(-kLocalSharpness * double{cell.distance} * double{cell.distance}));
   for (int bit = 0; bit < format.part_bits; ++bit) {
     reading.bit_weights[static_cast<std::size_t>(bit)] =
         scheme_.bit_weight(share, cell, format.marker_bits + bit);
@@ -226,7 +226,7 @@ std::vector<Reading> LocalIieScheme::Bound::readings(Inside inside) const {
     std::vector<double> made(sites_->points.size());
     parallel_for(
         made.size(), [&](std::size_t i) { made[i] = sphere_share(ground_, sites_->points[i]); },
-        kUnitsPerTask);
+        kLocalUnitsPerTask);
     return made;
   });
   std::vector<Reading> readings;
@@ -247,7 +247,7 @@ std::vector<Reading> LocalIieScheme::Bound::read_at(std::span<const std::uint32_
   parallel_for(
       shares.size(),
       [&](std::size_t i) { shares[i] = sphere_share(ground_, sites_->points[sites[i]]); },
-      kUnitsPerTask);
+      kLocalUnitsPerTask);
   std::vector<Reading> readings;
   for (std::size_t i = 0; i < sites.size(); ++i) read_site(sites[i], shares[i], readings);
   return readings;
