@@ -115,8 +115,7 @@ int run_attack(const MeshAttackArguments& arguments) {
         order.board->stop());
     if (order.only) return kDone;
     const bool is_run = !arguments.out_dir.empty();
-    int code = is_run ? tally.finish("mesh", "meshes") : tally.code();
-    if (!is_run && code == kSomeFailed) code = kUsageError;  // a mistake of the command
+    const int code = tally.end(is_run, "mesh", "meshes");
     run.end(code);
     return code;
   });

@@ -109,8 +109,7 @@ int run_measure(const MeasureArguments& arguments) {
         },
         order.board->stop());
     if (order.only) return kDone;
-    int code = is_run ? tally.finish("pair", "pairs") : tally.code();
-    if (!is_run && code == kSomeFailed) code = kUsageError;  // a mistake of the command
+    const int code = tally.end(is_run, "pair", "pairs");
     run.end(code);
     return code;
   });

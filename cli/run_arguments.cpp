@@ -173,6 +173,11 @@ int RunTally::finish(std::string_view one, std::string_view several) {
   return code();
 }
 
+int RunTally::end(bool is_run, std::string_view one, std::string_view several) {
+  if (is_run) return finish(one, several);
+  return code() == kSomeFailed ? kUsageError : code();
+}
+
 int RunTally::code() const {
   if (board_.gave_up()) return kSomeFailed;
   if (board_.stop()) return kInterrupted;

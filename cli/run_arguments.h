@@ -75,6 +75,10 @@ class RunTally {
   // the exit code.
   [[nodiscard]] int finish(std::string_view one, std::string_view several);
 
+  // Likewise for a run; for a command on files that it names, which has no line, a failure is a
+  // mistake of the command.
+  [[nodiscard]] int end(bool is_run, std::string_view one, std::string_view several);
+
   // Returns the exit code: that of an interrupt, of a run that was given up or had failures, or
   // kDone.
   [[nodiscard]] int code() const;

@@ -51,7 +51,7 @@ void run_files(const Source& source, const Work& work, const Deliver& deliver,
     std::unique_ptr<Item> item = source();
     if (item == nullptr) return nullptr;
     item->index = next++;
-    item->memory_estimate = memory_of(item->file, false);
+    item->memory_estimate = memory_of(item->file, MeshWork::Usual);
     return item;
   };
   flow.work = [&](FlowItem& any) {

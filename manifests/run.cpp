@@ -25,7 +25,7 @@ std::uint64_t peak_bytes() {
 struct MarkItem final : FlowItem {
   explicit MarkItem(Job&& the_job) : job(std::move(the_job)) {
     index = job.index;
-    memory_estimate = memory_of(job.mesh, job.request.is_fill());
+    memory_estimate = memory_of(job.mesh, work_of(job.request));
   }
   Job job;
   Record record;

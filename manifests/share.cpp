@@ -39,10 +39,10 @@ FlowOptions flow_options(const RunContext& context) {
   return options;
 }
 
-std::uint64_t memory_of(const std::filesystem::path& path, bool fill) {
+std::uint64_t memory_of(const std::filesystem::path& path, MeshWork work) {
   std::error_code error;
   const auto bytes = std::filesystem::file_size(path, error);
-  return estimate_memory(error ? 0 : bytes, path, fill);
+  return estimate_memory(error ? 0 : bytes, path, work);
 }
 
 void fail_if_asked(const std::filesystem::path& path) {

@@ -44,7 +44,7 @@ class Share {
 [[nodiscard]] FlowOptions flow_options(const RunContext& context);
 
 // Returns the estimate of the memory that a file takes; see estimate_memory().
-[[nodiscard]] std::uint64_t memory_of(const std::filesystem::path& path, bool fill);
+[[nodiscard]] std::uint64_t memory_of(const std::filesystem::path& path, MeshWork work);
 
 // For tests of the supervision: TRIGLYPH_FAULT="crash NAME" or "hang NAME" lets the process die or
 // hang when it processes the file of that name.

@@ -135,7 +135,7 @@ nlohmann::ordered_json answer_to(const RenderArguments& arguments, const std::st
   } catch (const std::bad_alloc&) {
     std::error_code ignored;
     const auto bytes = fs::file_size(original, ignored);
-    const std::uint64_t estimate = estimate_memory(ignored ? 0 : bytes, original, false);
+    const std::uint64_t estimate = estimate_memory(ignored ? 0 : bytes, original, MeshWork::Usual);
     return failure(FileStatus::Failed, too_little_memory(estimate), false);
   } catch (const std::exception& error) {
     return failure(FileStatus::Failed, error.what(), false);

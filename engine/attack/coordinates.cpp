@@ -9,7 +9,7 @@
 #include "engine/base/parallel.h"
 #include "engine/base/random.h"
 #include "engine/geometry/box.h"
-#include "engine/mesh/edge_graph.h"
+#include "engine/mesh/uniform_flow.h"
 
 namespace triglyph {
 namespace {
@@ -39,24 +39,7 @@ Mesh with_uniform_noise(const Mesh& mesh, double intensity, std::uint64_t seed) 
 }
 
 Mesh smoothed(const Mesh& mesh, int rounds, double step) {
-  const EdgeGraph graph = edge_graph(mesh);
-  Mesh result = mesh;
-  std::vector<Vec3> before;
-  for (int round = 0; round < rounds; ++round) {
-    before = result.positions;
-    parallel_for(
-        before.size(),
-        [&](std::size_t i) {
-          const auto spokes = graph.around(static_cast<std::uint32_t>(i));
-          if (spokes.empty()) return;
-          Vec3 mean(0, 0, 0);
-          for (const EdgeGraph::Spoke& spoke : spokes) mean += before[spoke.to];
-          mean /= static_cast<double>(spokes.size());
-          result.positions[i] += step * (mean - before[i]);
-        },
-        kBlock);
-  }
-  return result;
+  return {UniformFlow(mesh, step).smoothed(mesh.positions, rounds), mesh.triangles};
 }
 
 Mesh quantised(const Mesh& mesh, int bits) {

@@ -9,6 +9,7 @@
 #include <cstdint>
 
 #include "engine/mesh/mesh.h"
+#include "engine/mesh/uniform_flow.h"
 
 namespace triglyph {
 
@@ -16,12 +17,9 @@ namespace triglyph {
 // centroid, uniformly: the benchmark's noise. O(points).
 [[nodiscard]] Mesh with_uniform_noise(const Mesh& mesh, double intensity, std::uint64_t seed);
 
-// The benchmark's strength of smoothing.
-inline constexpr double kSmoothingStep = 0.1;
-
 // Laplacian smoothing with uniform weights: in each round every point, on a border too, moves by
 // `step` of the way to the mean of its neighbours, all at once. O(rounds * edges), parallel.
-[[nodiscard]] Mesh smoothed(const Mesh& mesh, int rounds, double step = kSmoothingStep);
+[[nodiscard]] Mesh smoothed(const Mesh& mesh, int rounds, double step = kFlowStep);
 
 // Coordinates rounded to multiples of 2^-bits of the box's side, an axis at a time, from its lower
 // end: the benchmark's quantisation, with 2^bits intervals and therefore 2^bits + 1 values.

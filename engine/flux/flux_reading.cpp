@@ -9,7 +9,9 @@
 
 #include "engine/base/parallel.h"
 #include "engine/flux/closed_mesh.h"
-#include "engine/flux/surface_flow.h"
+#include "engine/flux/curvature_flow.h"
+#include "engine/mesh/edge_length.h"
+#include "engine/mesh/uniform_flow.h"
 
 namespace triglyph {
 namespace {
@@ -23,9 +25,9 @@ struct AxesGuess {
 // The third moments that fix the signs, and the order of the spreads, mostly survive; a mirror
 // image turns one axis. The priors add up to one.
 double axes_prior(bool keeps_order, bool keeps_signs, bool mirrored) {
-  if (keeps_order && keeps_signs) return 0.4;      // 1 guess
-  if (keeps_order) return mirrored ? 0.05 : 0.05;  // 4 and 3
-  return mirrored ? 0.005 : 0.0075;                // 20 each
+  if (keeps_order && keeps_signs) return 0.4;  // 1 guess
+  if (keeps_order) return 0.05;                // 4 mirrored guesses and 3 others
+  return mirrored ? 0.005 : 0.0075;            // 20 each
 }
 
 std::vector<AxesGuess> axes_guesses() {
@@ -238,15 +240,7 @@ class FluxReader {
         const double evidence = soft.evidence(word) - fixed_price_ - attempt.guess->price -
                                 attempt.axes->price - code.bits();
         if (evidence < kBelieved || (best && evidence <= best->evidence)) continue;
-        std::size_t agreeing = 0;
-        for (std::size_t i = 0; i < kFunctionals; ++i) {
-          agreeing += soft.ratio[i] != 0 && (soft.ratio[i] < 0) == (word[i] != 0) ? 1 : 0;
-        }
-        best = FluxFound{{*payload, code.bits(), code.content()},
-                         evidence,
-                         attempt.guess->undone,
-                         attempt.step,
-                         agreeing};
+        best = FluxFound{{*payload, code.bits(), code.content()}, evidence, attempt.guess->undone};
       }
     }
     return best;
@@ -257,16 +251,6 @@ class FluxReader {
   std::vector<BlockCode> codes_;
   double fixed_price_ = 0;
 };
-
-double mean_edge(const Mesh& mesh) {
-  double sum = 0;
-  for (const Triangle& t : mesh.triangles) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      sum += (mesh.positions[t[c]] - mesh.positions[t[(c + 1) % 3]]).norm();
-    }
-  }
-  return mesh.triangles.empty() ? 0 : sum / (3.0 * static_cast<double>(mesh.triangles.size()));
-}
 
 // Calls try_all(guesses) with more and more hypotheses of what was done to the surface, the
 // likeliest and quickest first, until it returns true.
@@ -291,7 +275,7 @@ void for_guesses(const Surface& surface, const TryAll& try_all) {
   if (try_all(guesses)) return;
 
   guesses.clear();
-  if (mean_edge(surface.mesh) < kFineEdge * kShellWidth * frame->scale) return;
+  if (mean_edge_length(surface.mesh) < kFineEdge * kShellWidth * frame->scale) return;
   const double price = -std::log2(kUnsmoothedPrior / double{kUnsmoothedSteps.size()});
   for (const int steps : kUnsmoothedSteps) {
     const auto before = subject.values(flow.unsmoothed(positions, steps, kUnsmoothedIterations));

@@ -17,9 +17,7 @@ struct FluxFound {
   // of another key, gives a payload at least as likely: evidence less the price of everything
   // tried.
   double evidence = 0;
-  std::string undone;        // what was undone before the payload was read: "", "smoothing 30", ..
-  std::size_t step = 0;      // index, see step_size()
-  std::size_t readable = 0;  // functionals that agree with the payload's word
+  std::string undone;  // what was undone before the payload was read: "", "smoothing 30", ..
 };
 
 // Evidence, in bits, at which a payload is believed.

@@ -139,10 +139,18 @@ class FileMarking {
                                    const std::filesystem::path& out, const MarkRequest& request,
                                    const Key& key);
 
-// Returns an upper estimate of the memory, in bytes, that marking a file takes, from its size, its
-// extension (in any case) and whether it is filled. Measured on common meshes; a file that is
-// mostly comments takes less.
+// What is done to a mesh, as far as it decides how much memory that takes.
+enum class MeshWork : std::uint8_t {
+  Usual,  // reading, measuring, marking units
+  Fill,   // a cost matrix of all units
+  Flux,   // a flux layer
+};
+[[nodiscard]] MeshWork work_of(const MarkRequest& request);
+
+// Returns an upper estimate of the memory, in bytes, that work on a file takes, from its size and
+// its extension (in any case). Measured on common meshes; a file that is mostly comments takes
+// less.
 [[nodiscard]] std::uint64_t estimate_memory(std::uint64_t file_bytes,
-                                            const std::filesystem::path& mesh, bool fill);
+                                            const std::filesystem::path& mesh, MeshWork work);
 
 }  // namespace triglyph

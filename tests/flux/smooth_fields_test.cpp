@@ -1,8 +1,9 @@
 #include <gtest/gtest.h>
 
-#include "engine/flux/surface_flow.h"
+#include "engine/flux/curvature_flow.h"
 #include "engine/flux/thin_plate.h"
 #include "engine/mesh/edge_graph.h"
+#include "engine/mesh/uniform_flow.h"
 #include "tests/flux/flux_shapes.h"
 
 namespace triglyph {

@@ -121,13 +121,17 @@ TEST(MarkOptions, OptionsOfAReaderApplyToEveryGeneration) {
 
 TEST(EstimateMemory, KnowsFormatsInAnyCaseAndTheCostsOfFill) {
   constexpr std::uint64_t kFile = 2'700'000;  // a bunny's
-  EXPECT_EQ(estimate_memory(kFile, "a.PLY", false), estimate_memory(kFile, "a.ply", false));
-  EXPECT_GT(estimate_memory(kFile, "a.ply", false), estimate_memory(kFile, "a.obj", false));
+  EXPECT_EQ(estimate_memory(kFile, "a.PLY", MeshWork::Usual),
+            estimate_memory(kFile, "a.ply", MeshWork::Usual));
+  EXPECT_GT(estimate_memory(kFile, "a.ply", MeshWork::Usual),
+            estimate_memory(kFile, "a.obj", MeshWork::Usual));
   // 5,300 units under as many words: two matrices of 114 MB
-  EXPECT_GT(estimate_memory(kFile, "a.obj", true), std::uint64_t{2} * 114'000'000);
+  EXPECT_GT(estimate_memory(kFile, "a.obj", MeshWork::Fill), std::uint64_t{2} * 114'000'000);
   // larger ones are dealt into blocks of 2^26 pairs
-  EXPECT_LT(estimate_memory(1'000'000'000, "a.obj", true),
-            estimate_memory(1'000'000'000, "a.obj", false) + (std::uint64_t{1} << 30));
+  EXPECT_LT(estimate_memory(1'000'000'000, "a.obj", MeshWork::Fill),
+            estimate_memory(1'000'000'000, "a.obj", MeshWork::Usual) + (std::uint64_t{1} << 30));
+  // what marking the bunny, cut into 1.1 million triangles, took at its peak
+  EXPECT_GT(estimate_memory(48'064'271, "a.obj", MeshWork::Flux), 676'278'272U);
 }
 
 }  // namespace

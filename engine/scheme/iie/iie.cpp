@@ -216,10 +216,7 @@ float IieScheme::cost_of(const Mesh& mesh, const LocalCost& local, const Ball& b
 }
 
 UnitSet IieScheme::Bound::find_units() const {
-  struct Found {
-    std::vector<std::uint32_t> moved, read;
-  };
-  std::vector<Found> found(sites_->points.size());
+  std::vector<SiteUnit> found(sites_->points.size());
   parallel_for(
       found.size(),
       [&](std::size_t i) {
@@ -235,14 +232,7 @@ UnitSet IieScheme::Bound::find_units() const {
         found[i] = {std::move(ball->cap), std::move(read)};
       },
       kUnitsPerTask);
-  UnitSet units;
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    if (found[i].moved.empty()) continue;
-    units.anchors.push_back(sites_->points[i]);
-    units.moved.append(std::span<const std::uint32_t>(found[i].moved));
-    units.read.append(std::span<const std::uint32_t>(found[i].read));
-  }
-  return units;
+  return units_at(*sites_, found);
 }
 
 CostMatrix IieScheme::Bound::costs(const UnitSet& units, std::span<const std::uint32_t> chosen,

@@ -143,10 +143,7 @@ float LocalIieScheme::cost_of(const Mesh& mesh, const LocalCost& local, const Lo
 }
 
 UnitSet LocalIieScheme::Bound::find_units() const {
-  struct Found {
-    std::vector<std::uint32_t> moved, read;
-  };
-  std::vector<Found> found(sites_->points.size());
+  std::vector<SiteUnit> found(sites_->points.size());
   parallel_for(
       found.size(),
       [&](std::size_t i) {
@@ -155,14 +152,7 @@ UnitSet LocalIieScheme::Bound::find_units() const {
         found[i] = {ball->moved(), {ball->points().begin(), ball->points().end()}};
       },
       kLocalUnitsPerTask);
-  UnitSet units;
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    if (found[i].moved.empty()) continue;
-    units.anchors.push_back(sites_->points[i]);
-    units.moved.append(std::span<const std::uint32_t>(found[i].moved));
-    units.read.append(std::span<const std::uint32_t>(found[i].read));
-  }
-  return units;
+  return units_at(*sites_, found);
 }
 
 CostMatrix LocalIieScheme::Bound::costs(const UnitSet& units, std::span<const std::uint32_t> chosen,

@@ -118,4 +118,15 @@ IieSites scatter_sites(const Halfedges& halfedges, std::size_t points, int rings
   return sites;
 }
 
+UnitSet units_at(const IieSites& sites, std::span<const SiteUnit> found) {
+  UnitSet units;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (found[i].moved.empty()) continue;
+    units.anchors.push_back(sites.points[i]);
+    units.moved.append(std::span<const std::uint32_t>(found[i].moved));
+    units.read.append(std::span<const std::uint32_t>(found[i].read));
+  }
+  return units;
+}
+
 }  // namespace triglyph

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "engine/mesh/halfedges.h"
 #include "engine/scheme/iie/ring_signature.h"
+#include "engine/scheme/scheme.h"
 
 namespace triglyph {
 
@@ -32,6 +34,15 @@ struct IieSites {
 // more or less may change the next. O(points log points) and the rings of the sites.
 [[nodiscard]] IieSites scatter_sites(const Halfedges& halfedges, std::size_t points, int rings,
                                      std::uint64_t seed);
+
+// The points of the unit at a site; none moved: the site has no unit.
+struct SiteUnit {
+  std::vector<std::uint32_t> moved;
+  std::vector<std::uint32_t> read;
+};
+
+// Returns the units at the sites that have one; `found` has an entry a site. O(points in them).
+[[nodiscard]] UnitSet units_at(const IieSites& sites, std::span<const SiteUnit> found);
 
 // Returns the points within so many rings of a point, itself among them, ascending. Returns nothing
 // once accept(other) returns false for one of them, or if a fan is open. O(n log n) for n points.
