@@ -7,6 +7,8 @@
 #include "engine/flux/flux_mark.h"
 #include "engine/marking/mark_stages.h"
 #include "engine/marking/way_out.h"
+#include "engine/mesh/surface_diagonal.h"
+#include "engine/metric/deformation.h"
 
 namespace triglyph {
 namespace {
@@ -14,6 +16,9 @@ namespace {
 // The root mean square of the flux layer's moves by Strength, percent of the diagonal. MSDM2 stays
 // below 0.05, 0.2 and 0.35 with them on most meshes.
 constexpr std::array<double, 3> kFluxMoves = {0.02, 0.07, 0.12};
+
+// The share of the user's limit of moves that is left to the flux layer where units follow.
+constexpr double kFluxShareOfLimit = 0.75;
 
 Marking already_marked(Marking& marking, FoundMessage found) {
   marking.status = MarkStatus::AlreadyMarked;
@@ -67,11 +72,21 @@ Marking with_units(const MarkTask& task, Marking flux_alone) {
   const MarkOptions& options = task.options;
   if (options.units == LayerUse::No) return flux_alone;
   const Mesh mesh{flux_alone.positions, task.surface.mesh.triangles};
-  const MarkTask moved{
-      {mesh, task.surface.halfedges}, task.payload, task.key, options, task.numbers};
+  MarkOptions rest = options;
+  double moved_percent = 0;  // by the flux layer; the limit is for both
+  if (options.max_move_percent.value_or(0) > 0) {
+    const Displacement moves = displacement(task.surface.mesh.positions, mesh.positions);
+    moved_percent = 100 * moves.max / surface_diagonal(task.surface.mesh);
+    rest.max_move_percent = *options.max_move_percent - moved_percent;
+  }
+  const MarkTask moved{{mesh, task.surface.halfedges}, task.payload, task.key, rest, task.numbers};
   MarkStages stages(moved);
   mark_units(moved, stages, options.units == LayerUse::Yes);
   Marking& marking = stages.marking();
+  if (marking.way_out.max_move_percent > 0) {
+    marking.way_out.max_move_percent += moved_percent;
+    marking.way_out.move_needed_percent += moved_percent;
+  }
   if (options.units == LayerUse::IfPossible && marking.status != MarkStatus::Marked) {
     return flux_alone;
   }
@@ -97,8 +112,9 @@ Marking mark(const Surface& surface, const Payload& payload, const Key& key,
   }
   FluxObstacle obstacle = FluxObstacle::None;
   if (message != nullptr && options.flux != LayerUse::No) {
+    const double share = options.units == LayerUse::No ? 1 : kFluxShareOfLimit;
     const FluxBounds bounds{kFluxMoves.at(static_cast<std::size_t>(options.strength)),
-                            options.max_move_percent.value_or(0), options.max_visibility};
+                            share * options.max_move_percent.value_or(0), options.max_visibility};
     FluxMarking flux = mark_flux(surface, *message, key, bounds, rounding);
     obstacle = flux.obstacle;
     if (obstacle == FluxObstacle::None && !reads(flux.mark, flux.positions, task)) {

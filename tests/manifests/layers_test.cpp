@@ -4,6 +4,7 @@
 #include "engine/attack/attack.h"
 #include "engine/attack/stored_mesh.h"
 #include "engine/base/error.h"
+#include "engine/geometry/box.h"
 #include "engine/io/export_mesh.h"
 #include "engine/marking/extract.h"
 #include "engine/marking/mark.h"
@@ -11,6 +12,7 @@
 #include "engine/marking/read_file.h"
 #include "engine/marking/refusal.h"
 #include "engine/marking/verify_file.h"
+#include "engine/metric/deformation.h"
 #include "manifests/record.h"
 #include "tests/flux/flux_shapes.h"
 #include "tests/support/temp_folder.h"
@@ -101,6 +103,21 @@ TEST(Layers, AreRecognisedBeforeASecondMark) {
   const Marking second = marked(mesh, request);
   EXPECT_EQ(second.status, MarkStatus::AlreadyMarked);
   EXPECT_NE(refusal(second, request, 0).find("number"), std::string::npos);
+}
+
+// The limit of moves is for the sum of the layers.
+TEST(Layers, TogetherKeepWithinTheLimitOfMoves) {
+  const double diagonal = box_diagonal(shape().positions);
+  for (const char* scheme : {"auto", "flux+tsq", "flux"}) {
+    const MarkRequest request =
+        resolve({{"scheme", scheme}, {"message", "leak 4711"}, {"max_move", 0.3}});
+    const Marking marking = marked(shape(), request);
+    ASSERT_EQ(marking.status, MarkStatus::Marked) << scheme;
+    EXPECT_TRUE(marking.flux) << scheme;
+    const Displacement moves = displacement(shape().positions, marking.positions);
+    EXPECT_LE(100 * moves.max / diagonal, 0.3) << scheme;
+    EXPECT_GT(moves.max, 0) << scheme;
+  }
 }
 
 TEST(Layers, StrengthMovesTheSurfaceMore) {
