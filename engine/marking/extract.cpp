@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "engine/flux/flux_mark.h"
 #include "engine/message/decode.h"
@@ -28,65 +29,116 @@ struct Counted {
   Decoded decoded;
 };
 
-Counted count(std::span<const Reading> readings, const WordCode& code, int doubtful_parts,
-              double power) {
+Votes votes_of(std::span<const Reading> readings, const WordCode& code, double power) {
   Votes votes(code);
   for (Reading reading : readings) {
-    reading.weight = static_cast<float>(std::pow(double{reading.weight}, power));
+    if (power != 1) reading.weight = static_cast<float>(std::pow(double{reading.weight}, power));
     votes.add(reading);
   }
-  Decoded decoded = decode(votes, code, doubtful_parts);
+  return votes;
+}
+
+Counted count_directly(std::span<const Reading> readings, const WordCode& code,
+                       int doubtful_parts) {
+  if (!code.format().is_spread) {
+    Votes votes = votes_of(readings, code, 1);
+    Decoded decoded = decode(votes, code, doubtful_parts);
+    return {std::move(votes), std::move(decoded)};
+  }
+  double false_alarm = 0;  // every attempt can go wrong
+  for (std::size_t i = 0;; ++i) {
+    Votes votes = votes_of(readings, code, kSpreadPowers.at(i));
+    Decoded decoded = decode(votes, code, doubtful_parts);
+    false_alarm += decoded.false_alarm;
+    decoded.false_alarm = false_alarm;
+    if (decoded.message || i + 1 == kSpreadPowers.size()) {
+      return {std::move(votes), std::move(decoded)};
+    }
+  }
+}
+
+Counted count_and_correct(std::span<const Reading> readings, const WordCode& code) {
+  Votes votes = votes_of(readings, code, 1);
+  Decoded decoded = correct(votes, code);
   return {std::move(votes), std::move(decoded)};
 }
 
-Extraction extract_from(std::vector<Reading> readings, const WordCode& code, int doubtful_parts) {
-  const bool is_spread = code.format().is_spread;
-  Extraction result;
-  result.readings = std::move(readings);
-  Counted counted = count(result.readings, code, doubtful_parts, is_spread ? kSpreadPowers[0] : 1);
-  result.false_alarm = counted.decoded.false_alarm;
-  for (std::size_t i = 1; is_spread && i < kSpreadPowers.size() && !counted.decoded.message; ++i) {
-    counted = count(result.readings, code, doubtful_parts, kSpreadPowers[i]);
-    result.false_alarm += counted.decoded.false_alarm;  // every attempt can go wrong
-  }
+// Completes the result by the message that was counted.
+void tell(Counted counted, const WordCode& code, Extraction& result) {
   result.message = std::move(counted.decoded.message);
-  if (!result.message) return result;
-
-  const std::vector<Word> words = code.words_of(*result.message);
+  const std::vector<Word> words =
+      code.words_of(*result.message, code.most_words(result.message->size()));
   result.parts = least_units_for(code.format(), result.message->size());
   for (const Reading& reading : result.readings) {
     const std::uint32_t index = code.part_index(reading.word.subscript);
     if (index < words.size() && words[index] == reading.word) ++result.agreeing;
   }
-  if (is_spread) {
+  if (code.format().is_spread) {
     // parts need not be carried, but every reading is of one
     result.agreement =
         static_cast<double>(result.agreeing) / static_cast<double>(result.readings.size());
-    return result;
+    return;
   }
   result.agreement = 1;
   for (std::uint32_t index = 0; index < result.parts; ++index) {
     result.agreement = std::min(result.agreement, counted.votes.agreement(index));
   }
-  return result;
+}
+
+// Tries readings of one surface in all ways it may have been turned, the first as it is; the
+// probability of a false alarm grows by each attempt.
+template <typename Count>
+bool try_each(std::vector<std::vector<Reading>>& turned, const WordCode& code, const Count& count,
+              Extraction& result) {
+  for (std::vector<Reading>& readings : turned) {
+    Counted counted = count(readings);
+    result.false_alarm += counted.decoded.false_alarm;
+    if (!counted.decoded.message) continue;
+    result.readings = std::move(readings);
+    tell(std::move(counted), code, result);
+    return true;
+  }
+  return false;
 }
 
 }  // namespace
 
 Extraction extract_as_is(const BoundScheme& scheme, const WordCode& code, int doubtful_parts) {
-  return extract_from(scheme.read(), code, doubtful_parts);
+  Extraction result;
+  std::vector<std::vector<Reading>> one = {scheme.read()};
+  const auto directly = [&](std::span<const Reading> readings) {
+    return count_directly(readings, code, doubtful_parts);
+  };
+  const auto corrected = [&](std::span<const Reading> readings) {
+    return count_and_correct(readings, code);
+  };
+  const bool is_found =
+      try_each(one, code, directly, result) ||
+      (has_repeated_words(one.front(), code.format()) && try_each(one, code, corrected, result));
+  if (!is_found) result.readings = std::move(one.front());
+  return result;
 }
 
-Extraction extract(const BoundScheme& scheme, const WordCode& code, int doubtful_parts) {
-  Extraction result = extract_as_is(scheme, code, doubtful_parts);
-  if (result.message) return result;
-  for (std::vector<Reading>& readings : scheme.read_turned_over()) {
-    Extraction turned = extract_from(std::move(readings), code, doubtful_parts);
-    result.false_alarm += turned.false_alarm;
-    if (!turned.message) continue;
-    turned.false_alarm = result.false_alarm;
-    return turned;
+Extraction extract(const BoundScheme& scheme, const WordCode& code, int doubtful_parts,
+                   ReadEffort effort) {
+  Extraction result;
+  std::vector<std::vector<Reading>> as_it_is = {scheme.read()};
+  const auto directly = [&](std::span<const Reading> readings) {
+    return count_directly(readings, code, doubtful_parts);
+  };
+  const auto corrected = [&](std::span<const Reading> readings) {
+    return count_and_correct(readings, code);
+  };
+  const bool is_direct = effort != ReadEffort::Correct;
+  if (is_direct && try_each(as_it_is, code, directly, result)) return result;
+  std::vector<std::vector<Reading>> others = scheme.read_turned_over();
+  if (is_direct && try_each(others, code, directly, result)) return result;
+  if (effort != ReadEffort::Direct && !code.format().is_spread) {
+    if (try_each(as_it_is, code, corrected, result) || try_each(others, code, corrected, result)) {
+      return result;
+    }
   }
+  result.readings = std::move(as_it_is.front());
   return result;
 }
 
@@ -112,10 +164,12 @@ bool has_repeated_words(std::span<const Reading> readings, const WordFormat& for
   return false;
 }
 
-Extraction extract(const Surface& surface, const Encoding& encoding, const Key& key) {
+Extraction extract(const Surface& surface, const Encoding& encoding, const Key& key,
+                   ReadEffort effort) {
   if (encoding.scheme == kFluxScheme) {
     Extraction result;
-    result.flux = read_flux(surface, key);
+    result.flux = read_flux(surface, key,
+                            effort == ReadEffort::Direct ? FluxEffort::AsItIs : FluxEffort::All);
     result.false_alarm = std::exp2(-kBelieved);
     if (result.flux) {
       result.message = message_in(result.flux->payload);
@@ -125,7 +179,7 @@ Extraction extract(const Surface& surface, const Encoding& encoding, const Key& 
   }
   const WordCode code(key, encoding.format);
   const auto scheme = make_scheme(encoding.scheme, code, encoding.scheme_options);
-  return extract(*scheme->bind(surface), code, doubtful_parts(encoding.scheme_options));
+  return extract(*scheme->bind(surface), code, doubtful_parts(encoding.scheme_options), effort);
 }
 
 }  // namespace triglyph

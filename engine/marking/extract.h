@@ -31,19 +31,28 @@ struct Extraction {
   std::optional<FluxFound> flux;
 };
 
+// What a reader tries. Who looks for marks of many kinds tries what is quick and surest for all of
+// them first.
+enum class ReadEffort : std::uint8_t {
+  Direct,   // what a mark says that is as it was made, or lost units but no part
+  Correct,  // only what else it may say: of flux all hypotheses
+  All,      // both, the first first
+};
+
 // Extracts with a scheme that is bound to the surface, also if the surface was turned inside out or
 // mirrored since it was marked: that is tried if the surface as it is shows no message, and adds to
 // the probability of a false alarm. `doubtful_parts` is as in decode(). O(triangles).
 [[nodiscard]] Extraction extract(const BoundScheme& scheme, const WordCode& code,
-                                 int doubtful_parts = 0);
+                                 int doubtful_parts = 0, ReadEffort effort = ReadEffort::All);
 
-// Extracts from the surface as it is alone.
+// Extracts from the surface as it is alone. Corrects only what looks like a mark.
 [[nodiscard]] Extraction extract_as_is(const BoundScheme& scheme, const WordCode& code,
                                        int doubtful_parts = 0);
 
 // Extracts with the scheme and the word format of an encoding. Throws Error Usage for an unknown
 // scheme or options out of range.
-[[nodiscard]] Extraction extract(const Surface& surface, const Encoding& encoding, const Key& key);
+[[nodiscard]] Extraction extract(const Surface& surface, const Encoding& encoding, const Key& key,
+                                 ReadEffort effort = ReadEffort::All);
 
 // Says whether readings of a sample look like those of a mesh that carries a message, in which
 // words repeat: some word is read more often than chance would let any be. Wrong in about one of a

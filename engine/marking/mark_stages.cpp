@@ -23,8 +23,17 @@ constexpr int kMaxRounds = 16;
 constexpr std::uint32_t kOneInSample = 6;
 
 // Whoever wants fewer units a part than these may have marked the mesh with as few before, and the
-// sample would not show them.
-constexpr std::uint32_t kSampledRedundancy = 16;
+// sample would not show them; nor would it those of a small mesh, which is quickly read.
+constexpr std::uint32_t kSampledRedundancy = 32;
+constexpr std::size_t kSampledTriangles = 30'000;
+
+// A message has up to so many words for each part that it needs; more correct hardly more errors,
+// and a mesh that carries it already is known by words that repeat.
+constexpr std::uint32_t kMostWordsPerPart = 4;
+
+// Words beyond those that are needed are made if there are so many units for each word: what
+// carries a part by itself is needed more.
+constexpr std::size_t kUnitsPerWord = 4;
 
 // Share of a cell's width from which on the distance between the output's numbers explains that
 // most units were lost: rounding moves each of a unit's points by up to half that distance, which
@@ -60,9 +69,12 @@ std::vector<Placement> lost_placements(std::span<const Placement> placements, co
   return {};
 }
 
-std::uint32_t count_parts(const Marking& marking) {
-  std::vector<char> is_carried(marking.words.size(), 0);
-  for (const Carrier& carrier : marking.carriers) is_carried[carrier.word] = 1;
+// Returns how many of the first words have a carrier.
+std::uint32_t count_carried(const Marking& marking, std::size_t words) {
+  std::vector<char> is_carried(words, 0);
+  for (const Carrier& carrier : marking.carriers) {
+    if (carrier.word < words) is_carried[carrier.word] = 1;
+  }
   return static_cast<std::uint32_t>(std::count(is_carried.begin(), is_carried.end(), 1));
 }
 
@@ -96,7 +108,8 @@ MarkStages::MarkStages(const MarkTask& task)
 
 Extraction MarkStages::read() const {
   const std::uint32_t redundancy = task_.options.redundancy;
-  if (redundancy == 0 || redundancy >= kSampledRedundancy) {
+  const bool is_large = task_.surface.mesh.triangles.size() >= kSampledTriangles;
+  if (is_large && (redundancy == 0 || redundancy >= kSampledRedundancy)) {
     const auto sample = binding_->bound->read_sample(kOneInSample);
     if (sample && !has_repeated_words(*sample, task_.options.format)) return {};
   }
@@ -120,9 +133,8 @@ void MarkStages::select_units() {
 bool MarkStages::make_words() {
   const std::size_t units = capacity_.valid.size();
   if (!is_fill()) {
-    marking_.words = binding_->code.words_of(*message_);
-    marking_.parts_needed = least_units_for(marking_.format, message_->size());
-    return units >= least_units_for(marking_.format, message_->size());
+    set_message(*message_, units, marking_);
+    return units >= marking_.parts_needed;
   }
   if (units == 0) return false;
   if (!task_.options.keeps_subscript_bits) {
@@ -135,6 +147,21 @@ bool MarkStages::make_words() {
   marking_.words =
       code.fill_words(static_cast<std::uint32_t>(std::min<std::size_t>(units, code.capacity())));
   return true;
+}
+
+void MarkStages::set_message(std::span<const std::uint8_t> message, std::size_t units,
+                             Marking& marking) const {
+  const WordCode& code = binding_->code;
+  marking.parts_needed = least_units_for(marking_.format, message.size());
+  if (is_spread()) {
+    marking.words = code.words_of(message);
+    return;
+  }
+  const std::size_t parts = marking.parts_needed;
+  const std::size_t redundancy = task_.options.redundancy;
+  const std::size_t used = redundancy == 0 ? units : std::min(units, redundancy * parts);
+  marking.words = code.words_of(message, static_cast<std::uint32_t>(std::min(
+                                             used / kUnitsPerWord, kMostWordsPerPart * parts)));
 }
 
 // What the user limits is a cap; otherwise schemes with units enough aim at moves that are not
@@ -157,8 +184,10 @@ void MarkStages::embed(const MoveLimits& limits, const Capacity& capacity, Marki
   const MarkOptions& options = task_.options;
   const BoundScheme& scheme = *binding_->bound;
   const BoundScheme& measured = limits.cap > 0 ? moves() : scheme;
-  WordAssigner assigner(scheme, measured, capacity.units, capacity.valid, marking.words, options,
-                        limits);
+  const auto parts =
+      is_fill() ? static_cast<std::uint32_t>(marking.words.size()) : marking.parts_needed;
+  WordAssigner assigner(scheme, measured, capacity.units, capacity.valid, marking.words, parts,
+                        options, limits);
   const bool once = is_fill() || is_spread() || options.assign == AssignMethod::Sequential;
   for (int round = 0; round < (once ? 1 : kMaxRounds); ++round) {
     stop_point();
@@ -176,7 +205,8 @@ void MarkStages::embed(const MoveLimits& limits, const Capacity& capacity, Marki
     if (lost.empty()) break;
     for (const Placement& placement : lost) assigner.rule_out(placement);
   }
-  marking.parts_carried = count_parts(marking);
+  const std::size_t wanted = is_fill() || is_spread() ? marking.words.size() : marking.parts_needed;
+  marking.parts_carried = count_carried(marking, wanted);
   if (is_spread()) marking.is_readable = reads_back(marking);
 }
 
@@ -193,7 +223,7 @@ MarkStatus MarkStages::status_of(const Marking& marking) const {
   const bool lost_most = 2 * marking.units_dropped > marking.units_assigned;
   const bool is_coarse = task_.numbers.step > kCoarseStep * binding_->bound->cell_size();
   if (lost_most && is_coarse) return MarkStatus::TooCoarse;
-  bool has_all = marking.parts_carried == marking.words.size();
+  bool has_all = marking.parts_carried == marking.parts_needed;
   if (is_fill()) has_all = marking.parts_carried > 0;
   if (is_spread()) has_all = marking.is_readable;
   return has_all ? MarkStatus::Marked : MarkStatus::TooSmall;
@@ -210,8 +240,7 @@ Marking MarkStages::marked_within(double max_move_percent) {
 
 Marking MarkStages::marked_with(std::span<const std::uint8_t> message) {
   Marking trial;
-  trial.words = binding_->code.words_of(message);
-  trial.parts_needed = least_units_for(marking_.format, message.size());
+  set_message(message, capacity_.valid.size(), trial);
   trial.status = MarkStatus::TooSmall;
   // then the words decide which candidates are left out
   const bool depends_on_words = task_.options.drop_dearest_percent > 0;
@@ -228,7 +257,7 @@ Marking MarkStages::marked_with(std::span<const std::uint8_t> message) {
 double MarkStages::least_move_percent() {
   if (!is_fill()) {
     WordAssigner assigner(*binding_->bound, moves(), capacity_.units, capacity_.valid,
-                          marking_.words, task_.options, {});
+                          marking_.words, marking_.parts_needed, task_.options, {});
     return 100 * assigner.least_move() / diagonal_;
   }
   const std::size_t probes = std::min<std::size_t>(kProbeWords, marking_.words.size());

@@ -75,6 +75,9 @@ class MarkStages {
 
   [[nodiscard]] bool is_fill() const { return message_ == nullptr; }
   [[nodiscard]] bool is_spread() const { return !is_fill() && task_.options.format.is_spread; }
+  // Makes the words of a message for so many units, of which it may need more.
+  void set_message(std::span<const std::uint8_t> message, std::size_t units,
+                   Marking& marking) const;
   [[nodiscard]] MoveLimits limits() const;
   [[nodiscard]] const BoundScheme& moves();
   void embed(const MoveLimits& limits, const Capacity& capacity, Marking& marking);

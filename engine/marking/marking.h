@@ -49,11 +49,11 @@ struct FoundMessage {
 struct Marking {
   MarkStatus status = MarkStatus::Marked;
   std::vector<Vec3> positions;      // of all points, as the file will hold them
-  std::vector<Word> words;          // one per part
+  std::vector<Word> words;          // one per part, and of a message others with parities
   WordFormat format;                // of the words; fill chooses the subscript bits
   std::vector<Carrier> carriers;    // ascending by anchor
-  std::uint32_t parts_carried = 0;  // parts with at least one carrier
-  std::uint32_t parts_needed = 0;   // by a message, of these
+  std::uint32_t parts_carried = 0;  // with at least one carrier, of those needed or of fill's
+  std::uint32_t parts_needed = 0;   // the first words, which a message needs; 0: fill
   bool is_readable = true;          // a spread message: is it found among all votes?
   std::uint32_t candidates = 0;
   std::uint32_t units_valid = 0;      // chosen by the layout

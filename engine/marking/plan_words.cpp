@@ -28,14 +28,11 @@ Assignment assign(const CostMatrix& costs, std::span<const std::uint32_t> demand
   throw Error(ErrorCode::Usage, {}, "", "unknown assignment");
 }
 
-// Returns the demand of each part: the redundancy, or what the units allow, as evenly as possible.
-std::vector<std::uint32_t> share_demand(std::size_t units, std::size_t parts,
-                                        std::uint32_t redundancy) {
-  const std::size_t wanted =
-      redundancy == 0 ? units : std::min<std::size_t>(units, redundancy * parts);
-  std::vector<std::uint32_t> demand(parts);
-  for (std::size_t part = 0; part < parts; ++part) {
-    demand[part] = static_cast<std::uint32_t>(wanted / parts + (part < wanted % parts ? 1 : 0));
+// Returns the demand of each word: the units divided as evenly as possible, first words first.
+std::vector<std::uint32_t> share_demand(std::size_t units, std::size_t words) {
+  std::vector<std::uint32_t> demand(words);
+  for (std::size_t word = 0; word < words; ++word) {
+    demand[word] = static_cast<std::uint32_t>(units / words + (word < units % words ? 1 : 0));
   }
   return demand;
 }
@@ -44,20 +41,23 @@ std::vector<std::uint32_t> share_demand(std::size_t units, std::size_t parts,
 
 WordAssigner::WordAssigner(const BoundScheme& scheme, const BoundScheme& moves,
                            const UnitSet& units, std::span<const std::uint32_t> valid,
-                           std::span<const Word> words, const MarkOptions& options,
-                           const MoveLimits& limits)
+                           std::span<const Word> words, std::uint32_t parts,
+                           const MarkOptions& options, const MoveLimits& limits)
     : scheme_(scheme),
       moves_(moves),
       units_(units),
       valid_(valid),
       words_(words),
+      parts_(parts),
       options_(options),
       limits_(limits),
       blocks_(std::max<std::size_t>(1, (valid.size() * words.size() + kMaxPairs - 1) / kMaxPairs)),
       costs_of_block_(kNoBlock) {}
 
 std::vector<std::uint32_t> WordAssigner::demand_of(std::uint32_t redundancy) const {
-  return share_demand(valid_.size(), words_.size(), redundancy);
+  const std::size_t wanted =
+      redundancy == 0 ? valid_.size() : std::min(valid_.size(), redundancy * parts_);
+  return share_demand(wanted, words_.size());
 }
 
 // With a cap, pairs beyond it are infeasible already; what counts is that no part is left with too
@@ -68,7 +68,7 @@ bool WordAssigner::is_within_limits(const WordPlan& plan, std::uint32_t redundan
   const std::vector<std::uint32_t> demand = demand_of(redundancy);
   std::vector<std::uint32_t> placed(words_.size(), 0);
   for (const Placement& placement : plan.placements) ++placed[placement.word];
-  for (std::size_t word = 0; word < placed.size(); ++word) {
+  for (std::size_t word = 0; word < parts_; ++word) {
     if (placed[word] < std::min(kMinRedundancy, demand[word])) return false;
   }
   return true;
@@ -78,7 +78,7 @@ WordPlan WordAssigner::plan(std::uint32_t redundancy) {
   WordPlan best = solve(redundancy);
   if (is_within_limits(best, redundancy)) return best;
   // bisection for the greatest redundancy within the limits; the least in any case
-  const auto possible = static_cast<std::uint32_t>((valid_.size() - 1) / words_.size() + 1);
+  const auto possible = static_cast<std::uint32_t>((valid_.size() - 1) / parts_ + 1);
   std::uint32_t too_many = redundancy == 0 ? possible : std::min(redundancy, possible);
   std::uint32_t enough = std::min(has_aim() ? kMinRedundancy : 1, too_many);
   best = solve(enough);
@@ -97,7 +97,8 @@ WordPlan WordAssigner::plan(std::uint32_t redundancy) {
 
 double WordAssigner::least_move() {
   check(limits_.cap == 0 && limits_.aim == 0, "the least move is that without limits");
-  const std::vector<std::uint32_t> demand(words_.size(), 1);
+  std::vector<std::uint32_t> demand(words_.size(), 0);
+  std::fill_n(demand.begin(), parts_, 1);
   return assign_bottleneck(moves_.costs(units_, block_units(0), words_), demand).max_cost;
 }
 

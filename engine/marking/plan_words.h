@@ -38,13 +38,15 @@ struct WordPlan {
 class WordAssigner {
  public:
   // All references must outlive the assigner. `moves` is a binding of the same scheme to the same
-  // surface whose costs are moves; the cap is kept in these.
+  // surface whose costs are moves; the cap is kept in these. The first `parts` words are those that
+  // a message needs.
   WordAssigner(const BoundScheme& scheme, const BoundScheme& moves, const UnitSet& units,
                std::span<const std::uint32_t> valid, std::span<const Word> words,
-               const MarkOptions& options, const MoveLimits& limits);
+               std::uint32_t parts, const MarkOptions& options, const MoveLimits& limits);
 
-  // Returns the best plan without the pairs that were ruled out, with `redundancy` units per part
-  // or as many as the limits of moves allow; 0 uses every valid unit.
+  // Returns the best plan without the pairs that were ruled out, with `redundancy` units for each
+  // part that is needed, divided among all words, or as many as the limits of moves allow; 0 uses
+  // every valid unit.
   [[nodiscard]] WordPlan plan(std::uint32_t redundancy);
 
   // Returns the best plan of every valid unit that can carry one of the words.
@@ -78,6 +80,7 @@ class WordAssigner {
   const UnitSet& units_;
   std::span<const std::uint32_t> valid_;
   std::span<const Word> words_;
+  std::size_t parts_;
   const MarkOptions& options_;
   MoveLimits limits_;
   std::size_t blocks_;

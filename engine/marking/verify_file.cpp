@@ -134,8 +134,9 @@ Verification verify_file(const MarkedFile& marked, const Key& key, bool locate) 
     const auto bound = scheme->bind(readable.surface());
     const Extraction found = extract(*bound, code, doubtful_parts(encoding.scheme_options));
     const MarkRequest& request = marked.request;
-    const std::vector<Word> words =
-        request.is_fill() ? code.fill_words(marked.parts) : code.words_of(request.message());
+    const std::vector<Word> words = request.is_fill()
+                                        ? code.fill_words(marked.parts)
+                                        : code.words_of(request.message(), marked.parts);
     result.units_found = count_words(code, words, found.readings);
     const bool carries_units = request.is_fill() ? 2 * result.units_found > marked.units_embedded
                                                  : found.message == request.message();

@@ -1,10 +1,16 @@
 #include "engine/message/decode.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace triglyph {
 namespace {
+
+// Units that damage spared lie at the centres of their cells, so that weights tell them from
+// chance; noise moves all units, and then weights tell little. Of 28 marks of seven meshes each
+// alone read 14 and 12 after a simplification by half, 4 and 12 after noise of 0.02 %.
+constexpr std::array<Votes::Trust, 2> kTrusts = {{{0.9, 2}, {0.5, 0.25}}};
 
 using Parts = std::vector<std::optional<std::uint32_t>>;
 
@@ -82,6 +88,17 @@ Decoded decode(const Votes& votes, const WordCode& code, int doubtful) {
   ChaseDecoder decoder(votes, code);
   Decoded decoded{decoder.best(), std::ldexp(1.0, doubtful - 32)};
   if (!decoded.message && doubtful > 0) decoded.message = decoder.vary(doubtful);
+  return decoded;
+}
+
+Decoded correct(const Votes& votes, const WordCode& code) {
+  Decoded decoded;
+  if (code.format().is_spread) return decoded;
+  for (const Votes::Trust& trust : kTrusts) {
+    if (decoded.message) break;
+    decoded.message = code.corrected_message_of(votes.bit_evidence(trust));
+    decoded.false_alarm += std::ldexp(static_cast<double>(kMaxSpreadBytes), -32);
+  }
   return decoded;
 }
 

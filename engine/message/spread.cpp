@@ -1,7 +1,6 @@
 #include "engine/message/spread.h"
 
 #include <algorithm>
-#include <bit>
 #include <limits>
 
 #include "engine/base/random.h"
@@ -15,8 +14,18 @@ constexpr std::uint32_t kWindows = 1U << kWindow;       // contents of a window
 constexpr std::uint32_t kStates = 1U << (kWindow - 1);  // of all but its newest bit
 constexpr std::uint64_t kEnds = 4, kTaps = 5;           // streams of random numbers
 
-bool is_odd(std::uint32_t bits) {
-  return std::popcount(bits) % 2 != 0;
+// Replaces the value of each content c by the sum of the values of all t, negated where c and t
+// share an odd number of bits: the fast Walsh-Hadamard transform.
+void sum_over_even_less_odd(std::span<float> values) {
+  for (std::size_t half = 1; half < values.size(); half *= 2) {
+    for (std::size_t begin = 0; begin < values.size(); begin += 2 * half) {
+      for (std::size_t i = begin; i < begin + half; ++i) {
+        const float sum = values[i] + values[i + half];
+        values[i + half] = values[i] - values[i + half];
+        values[i] = sum;
+      }
+    }
+  }
 }
 
 }  // namespace
@@ -49,7 +58,8 @@ bool SpreadCode::parity(std::span<const std::uint8_t> payload, std::uint32_t row
   return sum;
 }
 
-std::vector<std::uint8_t> SpreadCode::decode(std::span<const SoftParity> parities) const {
+std::vector<std::uint8_t> SpreadCode::decode(std::span<const SoftParity> parities,
+                                             std::span<const SoftBit> read) const {
   struct Tapped {
     std::uint32_t taps;
     float value;
@@ -59,6 +69,7 @@ std::vector<std::uint8_t> SpreadCode::decode(std::span<const SoftParity> paritie
     const Row row = row_of(parity.row);
     rows_at[row.end].push_back({row.taps, static_cast<float>(parity.value)});
   }
+  for (const SoftBit& own : read) rows_at[own.bit].push_back({1, static_cast<float>(own.value)});
   constexpr float kNever = -std::numeric_limits<float>::infinity();
   std::vector<float> score(kStates, kNever), next(kStates);
   score[0] = 0;
@@ -66,11 +77,8 @@ std::vector<std::uint8_t> SpreadCode::decode(std::span<const SoftParity> paritie
   std::vector<std::vector<char>> dropped(steps());  // by state: the bit that left the window
   for (std::size_t step = 0; step < steps(); ++step) {
     std::fill(gain.begin(), gain.end(), 0.0F);
-    for (const Tapped& row : rows_at[step]) {
-      for (std::uint32_t content = 0; content < kWindows; ++content) {
-        gain[content] += is_odd(content & row.taps) ? row.value : -row.value;
-      }
-    }
+    for (const Tapped& row : rows_at[step]) gain[row.taps] -= row.value;
+    if (!rows_at[step].empty()) sum_over_even_less_odd(gain);
     dropped[step].assign(kStates, 0);
     std::fill(next.begin(), next.end(), kNever);
     // a state holds the newest bits but one window's oldest; past the end only zeros enter

@@ -21,6 +21,12 @@ struct SoftParity {
   double value = 0;       // above 0: set, below 0: clear; the farther from 0, the surer
 };
 
+// A bit of the payload as it was read, with a value likewise.
+struct SoftBit {
+  std::size_t bit = 0;
+  double value = 0;
+};
+
 class SpreadCode {
  public:
   // Of payloads of `bits` > 0 bits.
@@ -29,9 +35,11 @@ class SpreadCode {
   // Returns the parity that a row draws of a payload, bit i of which is bit i % 8 of byte i / 8.
   [[nodiscard]] bool parity(std::span<const std::uint8_t> payload, std::uint32_t row) const;
 
-  // Returns the payload whose parities agree best with those read: the sum of the values of those
-  // that are set, less that of those that are clear, is greatest. O((parities + bits) * 2^12).
-  [[nodiscard]] std::vector<std::uint8_t> decode(std::span<const SoftParity> parities) const;
+  // Returns the payload that agrees best with the parities, and the bits of its own, that were
+  // read: the sum of the values of those that are set, less that of those that are clear, is
+  // greatest. Precondition: the bits read are below bits(). O(parities + bits * 12 * 2^12).
+  [[nodiscard]] std::vector<std::uint8_t> decode(std::span<const SoftParity> parities,
+                                                 std::span<const SoftBit> read = {}) const;
 
  private:
   // A parity is that of the bits end - i, for the bits i that are set in taps; those before the

@@ -14,6 +14,12 @@ namespace {
 // cell.
 constexpr double kMismatch = 0.15;
 
+// Likewise if a genuine vote gives it, in relation to that for the right value.
+constexpr double kLeastOdds = 0.05;
+
+// No bit is surer than this, in relation to the likeliest value.
+constexpr double kLeastShare = 1e-9;
+
 }  // namespace
 
 Votes::Votes(const WordCode& code)
@@ -77,6 +83,71 @@ std::vector<double> Votes::balances() const {
   std::vector<double> sums;
   for (const Bit& tally : bits_) sums.push_back(tally.set - tally.clear);
   return sums;
+}
+
+// The value of the part is v in advance with equal probability. A vote is genuine with a
+// probability that its weight tells, and then has each bit of v but for an error that the bit's
+// weight tells; or else it is random. Values that differ from a vote in two bits or more are as
+// likely under it as if it were random.
+void Votes::weigh_bits(const std::vector<Vote>& votes, const Trust& trust,
+                       std::span<double> ratios) const {
+  if (votes.empty()) return;
+  const auto part_bits = static_cast<std::size_t>(code_->format().part_bits);
+  const double values = std::ldexp(1.0, code_->format().part_bits);
+  struct Gain {
+    std::uint32_t value;
+    double log;
+  };
+  std::vector<Gain> gains;  // of values over all that no vote is near
+  for (const Vote& vote : votes) {
+    const double genuine = trust.most * std::pow(double{vote.weight}, trust.power);
+    double exact = 1;               // probability that a genuine vote has all bits right
+    std::array<double, 32> odds{};  // of an error
+    for (std::size_t bit = 0; bit < part_bits; ++bit) {
+      odds[bit] = 1 - (1 - kLeastOdds) * double{vote.bit_weights[bit]};
+      exact /= 1 + odds[bit];
+    }
+    const double far = 1 - genuine;
+    gains.push_back({vote.part, std::log1p(genuine * values * exact / far)});
+    for (std::size_t bit = 0; bit < part_bits; ++bit) {
+      gains.push_back(
+          {vote.part ^ 1U << bit, std::log1p(genuine * values * exact * odds[bit] / far)});
+    }
+  }
+  std::sort(gains.begin(), gains.end(), [](const Gain& a, const Gain& b) {
+    return a.value != b.value ? a.value < b.value : a.log < b.log;
+  });
+  std::size_t kept = 0;  // values, each with its sum
+  for (std::size_t i = 0; i < gains.size(); ++i) {
+    if (kept > 0 && gains[kept - 1].value == gains[i].value) {
+      gains[kept - 1].log += gains[i].log;
+    } else {
+      gains[kept++] = gains[i];
+    }
+  }
+  gains.resize(kept);
+  double most = 0;
+  for (const Gain& gain : gains) most = std::max(most, gain.log);
+  const double others = (values - static_cast<double>(kept)) * std::exp(-most);
+  std::vector<double> set(part_bits, others / 2), clear(part_bits, others / 2);
+  for (const Gain& gain : gains) {
+    const double share = std::exp(gain.log - most);
+    for (std::size_t bit = 0; bit < part_bits; ++bit) {
+      ((gain.value >> bit) & 1 ? set : clear)[bit] += share;
+    }
+  }
+  for (std::size_t bit = 0; bit < part_bits; ++bit) {
+    ratios[bit] = std::log(std::max(set[bit], kLeastShare) / std::max(clear[bit], kLeastShare));
+  }
+}
+
+std::vector<double> Votes::bit_evidence(const Trust& trust) const {
+  const auto part_bits = static_cast<std::size_t>(code_->format().part_bits);
+  std::vector<double> ratios(bits_.size(), 0);
+  parallel_for(votes_.size(), [&](std::size_t index) {
+    weigh_bits(votes_[index], trust, std::span(ratios).subspan(index * part_bits, part_bits));
+  });
+  return ratios;
 }
 
 double Votes::agreement(std::uint32_t part_index) const {

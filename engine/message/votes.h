@@ -32,6 +32,12 @@ class Votes {
   };
   using Ranking = std::vector<Choice>;
 
+  // The probability that a vote is genuine: `most` times a power of its weight.
+  struct Trust {
+    double most = 0.9;
+    double power = 1;
+  };
+
   explicit Votes(const WordCode& code);
 
   // Counts the vote of one unit.
@@ -47,6 +53,11 @@ class Votes {
   // Returns the sums of the votes on the bits of every part, part_bits of each: for set less
   // against.
   [[nodiscard]] std::vector<double> balances() const;
+
+  // Returns the log-likelihood ratios of the bits of every part, part_bits of each: of set against
+  // clear, 0 without votes. Votes that agree on a whole value weigh more than those that agree on
+  // a bit. O(votes * part_bits), parallel.
+  [[nodiscard]] std::vector<double> bit_evidence(const Trust& trust) const;
 
   // Returns the agreement of the votes on one part, from 0 (tied, or none) to 1 (unanimous): the
   // minimum over its bits of |for - against| / (for + against).
@@ -66,6 +77,8 @@ class Votes {
     std::array<float, 32> bit_weights{};
   };
   [[nodiscard]] Ranking rank(const std::vector<Vote>& votes) const;
+  void weigh_bits(const std::vector<Vote>& votes, const Trust& trust,
+                  std::span<double> ratios) const;
 
   const WordCode* code_;
   std::vector<Bit> bits_;  // part_bits per part

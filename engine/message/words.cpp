@@ -1,12 +1,14 @@
 #include "engine/message/words.h"
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <numeric>
 #include <utility>
 
 #include "engine/base/error.h"
-#include "engine/message/spread.h"
+#include "engine/base/parallel.h"
 
 namespace triglyph {
 namespace {
@@ -58,6 +60,18 @@ std::vector<std::uint8_t> payload_bytes(std::span<const std::uint8_t> message, s
   bytes.insert(bytes.end(), message.begin(), message.end());
   for (int i = 0; i < 4; ++i) bytes.push_back(static_cast<std::uint8_t>(tag >> (8 * i)));
   return bytes;
+}
+
+// Returns the message of the least number of bytes that attempt() finds.
+template <typename Attempt>
+std::optional<Message> first_of_lengths(const Attempt& attempt) {
+  std::array<std::optional<Message>, kMaxSpreadBytes> found;
+  parallel_for(
+      found.size(), [&](std::size_t i) { found[i] = attempt(i + 1); }, 1);
+  for (std::optional<Message>& message : found) {
+    if (message) return std::move(message);
+  }
+  return std::nullopt;
 }
 
 bool bit_at(std::span<const std::uint8_t> bytes, std::size_t bit) {
@@ -144,19 +158,53 @@ std::vector<Word> WordCode::words_of(std::span<const std::uint8_t> message) cons
   return words;
 }
 
+std::uint32_t WordCode::most_words(std::size_t message_bytes) const {
+  if (format_.is_spread || message_bytes <= kMaxSpreadBytes) return capacity();
+  return parts_for(format_, message_bytes);
+}
+
+std::vector<Word> WordCode::words_of(std::span<const std::uint8_t> message,
+                                     std::uint32_t count) const {
+  std::vector<Word> words = words_of(message);
+  const std::uint32_t wanted = std::min(count, most_words(message.size()));
+  const SpreadCode code(row_seed_, 8 * message.size() + kTagBits);
+  const std::vector<std::uint8_t> payload = spread_payload(message, key_.tag(message));
+  for (auto index = static_cast<std::uint32_t>(words.size()); index < wanted; ++index) {
+    words.push_back(parity_word(code, payload, index));
+  }
+  return words;
+}
+
+Word WordCode::parity_word(const SpreadCode& code, std::span<const std::uint8_t> payload,
+                           std::uint32_t index) const {
+  const auto part_bits = static_cast<std::uint32_t>(format_.part_bits);
+  std::uint32_t part = 0;
+  for (std::uint32_t bit = 0; bit < part_bits; ++bit) {
+    if (code.parity(payload, index * part_bits + bit)) part |= 1U << bit;
+  }
+  return {permutation_[index], whiten(part, index)};
+}
+
 std::vector<Word> WordCode::spread_words_of(std::span<const std::uint8_t> message) const {
   const SpreadCode code(row_seed_, 8 * message.size() + kTagBits);
   const std::vector<std::uint8_t> payload = spread_payload(message, key_.tag(message));
-  const auto part_bits = static_cast<std::uint32_t>(format_.part_bits);
   std::vector<Word> words(capacity());
   for (std::uint32_t index = 0; index < words.size(); ++index) {
-    std::uint32_t part = 0;
-    for (std::uint32_t bit = 0; bit < part_bits; ++bit) {
-      if (code.parity(payload, index * part_bits + bit)) part |= 1U << bit;
-    }
-    words[index] = {permutation_[index], whiten(part, index)};
+    words[index] = parity_word(code, payload, index);
   }
   return words;
+}
+
+std::optional<Message> WordCode::decoded(std::size_t message_bytes,
+                                         std::span<const SoftParity> parities,
+                                         std::span<const SoftBit> bits) const {
+  const std::size_t payload_bits = 8 * message_bytes + kTagBits;
+  if (parities.size() + bits.size() < payload_bits) return std::nullopt;
+  const std::vector<std::uint8_t> payload =
+      SpreadCode(row_seed_, payload_bits).decode(parities, bits);
+  Message message(payload.begin(), payload.begin() + static_cast<std::ptrdiff_t>(message_bytes));
+  if (payload != spread_payload(message, key_.tag(message))) return std::nullopt;
+  return message;
 }
 
 std::optional<Message> WordCode::spread_message_of(std::span<const double> balances) const {
@@ -167,15 +215,30 @@ std::optional<Message> WordCode::spread_message_of(std::span<const double> balan
     const bool is_flipped = (keystream_[row / part_bits] >> (row % part_bits) & 1) != 0;
     parities.push_back({row, is_flipped ? -balances[row] : balances[row]});
   }
-  for (std::size_t bytes = kMinMessageBytes; bytes <= kMaxSpreadBytes; ++bytes) {
-    const std::size_t bits = 8 * bytes + kTagBits;
-    if (parities.size() < bits) break;
-    const std::vector<std::uint8_t> payload = SpreadCode(row_seed_, bits).decode(parities);
-    const auto end = payload.begin() + static_cast<std::ptrdiff_t>(bytes);
-    const Message message(payload.begin(), end);
-    if (payload == spread_payload(message, key_.tag(message))) return message;
+  return first_of_lengths([&](std::size_t bytes) { return decoded(bytes, parities, {}); });
+}
+
+std::optional<Message> WordCode::corrected_message_of(std::span<const double> evidence) const {
+  const auto part_bits = static_cast<std::uint32_t>(format_.part_bits);
+  std::vector<SoftParity> known;
+  for (std::uint32_t row = 0; row < evidence.size(); ++row) {
+    if (evidence[row] == 0) continue;
+    const bool is_flipped = (keystream_[row / part_bits] >> (row % part_bits) & 1) != 0;
+    known.push_back({row, is_flipped ? -evidence[row] : evidence[row]});
   }
-  return std::nullopt;
+  return first_of_lengths([&](std::size_t bytes) -> std::optional<Message> {
+    const std::uint32_t own_rows = part_bits * parts_for(format_, bytes);
+    std::vector<SoftBit> bits;
+    std::vector<SoftParity> parities;
+    for (const SoftParity& read : known) {
+      if (read.row >= own_rows) {
+        parities.push_back(read);
+      } else if (read.row >= kLengthBits && read.row < kLengthBits + 8 * bytes + kTagBits) {
+        bits.push_back({read.row - kLengthBits, read.value});
+      }
+    }
+    return decoded(bytes, parities, bits);
+  });
 }
 
 std::vector<Word> WordCode::fill_words(std::uint32_t parts) const {

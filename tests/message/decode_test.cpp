@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/base/random.h"
 #include "tests/support/readings.h"
 
 namespace triglyph {
@@ -26,6 +27,59 @@ TEST(Decode, TakesTheBestOfEachPart) {
   const Decoded decoded = decode(votes_with(code, {}), code, 0);
   EXPECT_EQ(decoded.message, kMessage);
   EXPECT_EQ(decoded.false_alarm, 0x1p-32);
+}
+
+// Votes for some words of a message of 8 bytes, `copies` each, of which the first `lost` are lost.
+Votes coded_votes(const WordCode& code, std::uint32_t count, std::size_t copies, std::size_t lost) {
+  const Message message{'p', 'a', 'r', 'i', 't', 'i', 'e', 's'};
+  const std::vector<Word> words = code.words_of(message, count);
+  Votes votes(code);
+  for (std::size_t i = lost; i < words.size(); ++i) {
+    for (std::size_t copy = 0; copy < copies; ++copy) votes.add(test::reading_of(words[i], 0.8F));
+  }
+  return votes;
+}
+
+TEST(Decode, ParitiesReplaceLostParts) {
+  const WordCode code(Key::trial(), {6, 8, 9});
+  const Message message{'p', 'a', 'r', 'i', 't', 'i', 'e', 's'};
+  ASSERT_EQ(code.words_of(message).size(), 12U);
+  EXPECT_FALSE(correct(coded_votes(code, 12, 4, 1), code).message);
+  for (const std::size_t lost : {1U, 6U, 12U}) {
+    const Votes votes = coded_votes(code, 36, 4, lost);
+    EXPECT_FALSE(decode(votes, code, 0).message);
+    const Decoded decoded = correct(votes, code);
+    EXPECT_EQ(decoded.message, message) << lost;
+    EXPECT_GT(decoded.false_alarm, 0x1p-29);
+    EXPECT_LT(decoded.false_alarm, 0x1p-26);
+  }
+  EXPECT_FALSE(correct(coded_votes(code, 36, 4, 28), code).message);
+}
+
+// Every word has one genuine reading among three random ones, most of lesser weight, and every
+// fourth has none: the best values of the parts do not give the message.
+TEST(Decode, ParitiesCorrectErrors) {
+  const WordCode code(Key::trial(), {6, 8, 9});
+  const Message message{'p', 'a', 'r', 'i', 't', 'i', 'e', 's'};
+  const std::vector<Word> words = code.words_of(message, 48);
+  int read = 0;
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    Votes votes(code);
+    for (std::uint32_t i = 0; i < words.size(); ++i) {
+      if (i % 4 != 0) votes.add(test::reading_of(words[i], 0.8F));
+      for (std::uint32_t j = 0; j < 3; ++j) {
+        const auto part = static_cast<std::uint32_t>(random_bits(seed, i, j) & 511);
+        const double weight = random_unit(seed, 1000 + i, j);
+        votes.add(test::reading_of({words[i].subscript, part},
+                                   static_cast<float>(weight * weight * weight)));
+      }
+    }
+    EXPECT_FALSE(decode(votes, code, 0).message);
+    const Decoded decoded = correct(votes, code);
+    read += decoded.message == message ? 1 : 0;
+    EXPECT_TRUE(!decoded.message || decoded.message == message);
+  }
+  EXPECT_GE(read, 8);
 }
 
 TEST(Decode, DoubtsThePartsWithTheLeastLead) {

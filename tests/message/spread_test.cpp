@@ -77,7 +77,8 @@ TEST(SpreadWords, HoldAMessageOf16BytesAtMost) {
   EXPECT_THROW(check_message(kFormat, 0), Error);
 }
 
-// Against all payloads of a few bits: that found agrees best with the values read.
+// Against all payloads of a few bits: that found agrees best with the values read, of parities and
+// of its own bits.
 TEST(SpreadCode, FindsThePayloadThatAgreesBest) {
   for (const std::size_t bits : {1U, 5U, 8U, 13U}) {
     const SpreadCode code(7, bits);
@@ -86,8 +87,15 @@ TEST(SpreadCode, FindsThePayloadThatAgreesBest) {
       for (std::uint32_t row = 0; row < 3 * bits; ++row) {
         parities.push_back({row, 2 * random_unit(seed, 1, row) - 1});
       }
+      std::vector<SoftBit> own;
+      for (std::size_t bit = 0; bit < bits; bit += 2) {
+        own.push_back({bit, 2 * random_unit(seed, 2, bit) - 1});
+      }
       const auto agreement = [&](std::span<const std::uint8_t> payload) {
         double sum = 0;
+        for (const SoftBit& b : own) {
+          sum += (payload[b.bit / 8] >> (b.bit % 8) & 1) != 0 ? b.value : -b.value;
+        }
         for (const SoftParity& p : parities)
           sum += code.parity(payload, p.row) ? p.value : -p.value;
         return sum;
@@ -98,7 +106,8 @@ TEST(SpreadCode, FindsThePayloadThatAgreesBest) {
                                        static_cast<std::uint8_t>(value >> 8)};
         best = std::max(best, agreement(bytes));
       }
-      EXPECT_NEAR(agreement(code.decode(parities)), best, 1e-4) << bits << " bits, seed " << seed;
+      EXPECT_NEAR(agreement(code.decode(parities, own)), best, 1e-4)
+          << bits << " bits, seed " << seed;
     }
   }
 }

@@ -1,5 +1,6 @@
 #include "engine/message/words.h"
 
+#include <algorithm>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -103,6 +104,24 @@ TEST(WordCode, NeverChanges) {
   EXPECT_EQ(code.marker(), 20U);
   EXPECT_EQ(words[0], (Word{0x9f, 0xc7c}));
   EXPECT_EQ(words[8], (Word{0x33, 0xec4}));
+}
+
+// The words that a message needs come first and stay what they are: older readers know these alone.
+TEST(Words, OthersWithParitiesFollowThoseOfTheMessage) {
+  const WordCode code(Key::trial(), {6, 8, 9});
+  for (const std::size_t bytes : {1U, 8U, 16U}) {
+    const Message message = random_message(bytes, 5);
+    const std::vector<Word> needed = code.words_of(message);
+    const std::vector<Word> all = code.words_of(message, code.most_words(bytes));
+    EXPECT_EQ(all.size(), code.capacity());
+    EXPECT_TRUE(std::equal(needed.begin(), needed.end(), all.begin()));
+    EXPECT_EQ(code.words_of(message, 1), needed);
+    std::vector<char> is_used(code.capacity(), 0);
+    for (const Word& word : all) is_used[word.subscript] = 1;
+    EXPECT_EQ(std::count(is_used.begin(), is_used.end(), 1), code.capacity());
+  }
+  const Message longer = random_message(17, 5);
+  EXPECT_EQ(code.words_of(longer, code.capacity()), code.words_of(longer));
 }
 
 }  // namespace
