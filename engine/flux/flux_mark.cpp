@@ -126,7 +126,7 @@ FluxMarking mark_flux(const Surface& surface, std::span<const std::uint8_t> mess
     }
     if (bounds.visibility > 0) {
       const Mesh moved{written->positions, surface.mesh.triangles};
-      excess = std::max(excess, msdm2(surface.mesh, moved) / bounds.visibility);
+      excess = std::max(excess, msdm2(surface.mesh, moved, kWindowsSeen) / bounds.visibility);
     }
     if (excess <= 1) {
       result.mark = {payload, step_size(written->step), written->rms_percent,

@@ -9,6 +9,7 @@
 #include "engine/marking/way_out.h"
 #include "engine/mesh/surface_diagonal.h"
 #include "engine/metric/deformation.h"
+#include "engine/metric/structural_distortion.h"
 
 namespace triglyph {
 namespace {
@@ -17,8 +18,12 @@ namespace {
 // below 0.05, 0.2 and 0.35 with them on most meshes.
 constexpr std::array<double, 3> kFluxMoves = {0.02, 0.07, 0.12};
 
-// The share of the user's limit of moves that is left to the flux layer where units follow.
-constexpr double kFluxShareOfLimit = 0.75;
+// The share of the user's limits of moves and visibility that is left to the flux layer where units
+// follow.
+constexpr double kFluxShareOfLimits = 0.75;
+
+// A mark that is seen is tried again with so many times fewer units; MSDM2 falls by less.
+constexpr std::size_t kFewerUnits = 3;
 
 Marking already_marked(Marking& marking, FoundMessage found) {
   marking.status = MarkStatus::AlreadyMarked;
@@ -59,6 +64,32 @@ void mark_units(const MarkTask& task, MarkStages& stages, bool seeks_way_out) {
   }
 }
 
+// Marks the units of a surface within the budget of visibility, measured against the mesh as it was
+// before any layer: with fewer units a part where the mark would be seen.
+Marking mark_units_unseen(const MarkTask& task, MarkStages& stages, const Mesh& before,
+                          bool seeks_way_out) {
+  mark_units(task, stages, seeks_way_out);
+  Marking marking = std::move(stages.marking());
+  const double budget = task.options.max_visibility;
+  const bool has_redundancy = marking.parts_needed > 0 && !task.options.format.is_spread;
+  while (budget > 0 && marking.status == MarkStatus::Marked) {
+    marking.visibility = msdm2(before, {marking.positions, before.triangles}, kWindowsSeen);
+    if (marking.visibility <= budget) break;
+    MarkOptions fewer = task.options;
+    const std::size_t carried = has_redundancy ? marking.carriers.size() / marking.parts_needed : 0;
+    fewer.redundancy = static_cast<std::uint32_t>(carried / kFewerUnits);
+    if (fewer.redundancy == 0) {
+      marking.status = MarkStatus::TooVisible;
+      break;
+    }
+    const MarkTask again{task.surface, task.payload, task.key, fewer, task.numbers};
+    MarkStages fewer_units(again);
+    mark_units(again, fewer_units, false);
+    marking = std::move(fewer_units.marking());
+  }
+  return marking;
+}
+
 // Says whether a reader finds the flux layer on the surface with other positions.
 bool reads(const FluxMark& mark, std::span<const Vec3> positions, const MarkTask& task) {
   const Mesh mesh{{positions.begin(), positions.end()}, task.surface.mesh.triangles};
@@ -81,8 +112,8 @@ Marking with_units(const MarkTask& task, Marking flux_alone) {
   }
   const MarkTask moved{{mesh, task.surface.halfedges}, task.payload, task.key, rest, task.numbers};
   MarkStages stages(moved);
-  mark_units(moved, stages, options.units == LayerUse::Yes);
-  Marking& marking = stages.marking();
+  Marking marking =
+      mark_units_unseen(moved, stages, task.surface.mesh, options.units == LayerUse::Yes);
   if (marking.way_out.max_move_percent > 0) {
     marking.way_out.max_move_percent += moved_percent;
     marking.way_out.move_needed_percent += moved_percent;
@@ -93,7 +124,7 @@ Marking with_units(const MarkTask& task, Marking flux_alone) {
   marking.flux = flux_alone.flux;
   const bool keeps_flux = reads(*marking.flux, marking.positions, task);
   if (!keeps_flux && options.units == LayerUse::IfPossible) return flux_alone;
-  return std::move(marking);
+  return marking;
 }
 
 }  // namespace
@@ -112,9 +143,10 @@ Marking mark(const Surface& surface, const Payload& payload, const Key& key,
   }
   FluxObstacle obstacle = FluxObstacle::None;
   if (message != nullptr && options.flux != LayerUse::No) {
-    const double share = options.units == LayerUse::No ? 1 : kFluxShareOfLimit;
+    const double share = options.units == LayerUse::No ? 1 : kFluxShareOfLimits;
     const FluxBounds bounds{kFluxMoves.at(static_cast<std::size_t>(options.strength)),
-                            share * options.max_move_percent.value_or(0), options.max_visibility};
+                            share * options.max_move_percent.value_or(0),
+                            share * options.max_visibility};
     FluxMarking flux = mark_flux(surface, *message, key, bounds, rounding);
     obstacle = flux.obstacle;
     if (obstacle == FluxObstacle::None && !reads(flux.mark, flux.positions, task)) {
@@ -128,14 +160,15 @@ Marking mark(const Surface& surface, const Payload& payload, const Key& key,
       return with_units(task, std::move(alone));
     }
   }
-  Marking& marking = stages.marking();
-  marking.flux_obstacle = obstacle;
+  Marking marking;
   if (obstacle != FluxObstacle::None && options.flux == LayerUse::Yes) {
+    marking = std::move(stages.marking());
     marking.status = MarkStatus::NoFlux;
-    return std::move(marking);
+  } else {
+    marking = mark_units_unseen(task, stages, surface.mesh, true);
   }
-  mark_units(task, stages, true);
-  return std::move(marking);
+  marking.flux_obstacle = obstacle;
+  return marking;
 }
 
 }  // namespace triglyph

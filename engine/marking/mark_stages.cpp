@@ -169,7 +169,8 @@ void MarkStages::set_message(std::span<const std::uint8_t> message, std::size_t 
 MoveLimits MarkStages::limits() const {
   const MarkOptions& options = task_.options;
   if (options.max_move_percent) return {.cap = *options.max_move_percent / 100 * diagonal_};
-  const bool has_few_units = scheme_info(options.scheme).defaults(false).has_few_units;
+  const bool has_few_units =
+      scheme_info(options.scheme).defaults(false, options.strength).has_few_units;
   if (is_fill() || has_few_units) return {};
   return {.aim = kUsualMove / 100 * diagonal_};
 }

@@ -17,8 +17,9 @@ enum class MarkStatus {
   TooSmall,       // fewer units than parts, or a part without a unit that can carry it
   TooCoarse,      // the numbers of the file are too far apart for the quantiser cells
   AlreadyMarked,  // the mesh carries a mark of this key already, see Marking::found
-  TooVisible,     // some part has no unit that can carry it within MarkOptions::max_move_percent
-  NoFlux,         // the shape carries no flux mark, see Marking::flux_obstacle
+  TooVisible,  // some part has no unit that can carry it within MarkOptions::max_move_percent, or
+               // the mark exceeds MarkOptions::max_visibility
+  NoFlux,      // the shape carries no flux mark, see Marking::flux_obstacle
 };
 
 // A unit that carries a word after rounding and settling.
@@ -66,6 +67,7 @@ struct Marking {
   double assign_seconds = 0;          // step 2: costs and assignment, all rounds
   std::optional<FoundMessage> found;  // only of a mesh that is already marked
   WayOut way_out;                     // unless marked
+  double visibility = 0;              // MSDM2 of the whole mark, if it is limited
   std::optional<FluxMark> flux;       // the flux layer
   FluxObstacle flux_obstacle = FluxObstacle::None;  // why there is none, if it was wanted
 };

@@ -19,6 +19,9 @@ constexpr std::array<std::string_view, 3> kMessageKeys = {"message", "message_he
 constexpr double kMostSeconds = 86400;
 constexpr double kMostSeed = 9007199254740992.0;  // 2^53
 
+// A quarter of what marks of normal strength come to at worst.
+constexpr double kLightVisibility = 0.05;
+
 // by Strength
 constexpr std::array<std::string_view, 3> kStrengthNames = {"light", "normal", "strong"};
 
@@ -90,8 +93,9 @@ OptionTable<Options> make_table() {
       bits_option("part_bits", &WordFormat::part_bits, {2, 32}, "Message bits in a unit, w"),
       choice_option<Options>("strength", &Options::strength, strength_names(), "normal",
                              "How much the mark may change the mesh, and survives"),
-      number_option<Options>("max_visibility", &Options::max_visibility, {0, 1}, "MSDM2", "0",
-                             "Visibility that the flux layer keeps within; 0: by strength alone"),
+      number_option<Options>("max_visibility", &Options::max_visibility, {0, 1}, "MSDM2",
+                             "0.05 with --strength light, or else 0",
+                             "Visibility that the mark keeps within; 0: by strength alone"),
       of_layout(choice_option<Layout>("layout", &Layout::method, layout_names(), "the scheme's",
                                       "Method that chooses the units; first-fit is un-optimised")),
       of_layout(count_option<Layout>("layout_iterations", &Layout::iterations, {1, 1e9}, "", "64",
@@ -108,10 +112,11 @@ OptionTable<Options> make_table() {
           "assign", &Options::assign, assign_names(), "bottleneck",
           "Method that assigns words to units: in sequence (un-optimised), with the least maximum "
           "cost, or with the least sum of costs"),
-      choice_option<Options>("cost", &Options::cost, cost_names(), "displacement",
+      choice_option<Options>("cost", &Options::cost, cost_names(),
+                             "displacement, or rms with --strength light",
                              "Local change of the surface that the assignment minimises"),
       count_option<Options>(
-          "redundancy", &Options::redundancy, {0, 1e6}, "units", "32",
+          "redundancy", &Options::redundancy, {0, 1e6}, "units", "the strength's: 8, 32, 0",
           "Units wanted for each part of the message; 0: as many as there are; iie uses "
           "all in its local encoding"),
       number_option<Options>("max_move", &Options::max_move_percent, {0, 100},
@@ -168,12 +173,12 @@ bool is_scheme_option(std::string_view key) {
                      [&](std::string_view scheme) { return has_option(scheme, key); });
 }
 
-// The options of an older generation, with the numbers of bits.
-OptionValues with_bits(const SchemeDefaults& older) {
-  OptionValues values = older.options;
-  values["marker_bits"] = std::int64_t{older.format.marker_bits};
-  values["subscript_bits"] = std::int64_t{older.format.subscript_bits};
-  values["part_bits"] = std::int64_t{older.format.part_bits};
+// The options of a scheme, with the numbers of bits.
+OptionValues with_bits(const SchemeDefaults& defaults) {
+  OptionValues values = defaults.options;
+  values["marker_bits"] = std::int64_t{defaults.format.marker_bits};
+  values["subscript_bits"] = std::int64_t{defaults.format.subscript_bits};
+  values["part_bits"] = std::int64_t{defaults.format.part_bits};
   return values;
 }
 
@@ -185,8 +190,26 @@ void apply_scheme_options(const OptionValues& values, MarkOptions& options) {
   }
 }
 
-MarkOptions resolved_options(const OptionValues& values, std::string_view name, bool fill) {
-  MarkOptions options = default_mark_options(name, fill);
+Strength strength_of(const OptionValues& values) {
+  MarkOptions options;
+  const auto found = values.find("strength");
+  if (found != values.end()) apply_options(table(), {*found}, options);
+  return options.strength;
+}
+
+// Returns the options of the values, by default those of a message of so many bytes.
+MarkOptions resolved_options(const OptionValues& values, std::string_view name, bool fill,
+                             std::size_t message_bytes) {
+  const Strength strength = strength_of(values);
+  MarkOptions options = default_mark_options(name, fill, strength);
+  const WordFormat& format = options.format;
+  if (!fill && !format.is_spread &&
+      parts_for(format, message_bytes) > 1U << format.subscript_bits) {
+    // what readers try for other strengths has room for any message
+    const MarkOptions usual = default_mark_options(name, fill);
+    options.format = usual.format;
+    options.scheme_options = usual.scheme_options;
+  }
   apply_options(table(), values, options);
   apply_scheme_options(values, options);
   options.format.is_spread = is_spread(options.scheme, options.scheme_options);
@@ -232,15 +255,19 @@ std::string MarkOptions::scheme_name() const {
   return units == LayerUse::No ? std::string(kFluxScheme) : std::string(kFluxPlus) + scheme;
 }
 
-MarkOptions default_mark_options(std::string_view name, bool fill) {
+MarkOptions default_mark_options(std::string_view name, bool fill, Strength strength) {
   const Layers layers = layers_named(name);
-  const SchemeDefaults defaults = scheme_info(layers.scheme).defaults(fill);
+  const SchemeDefaults defaults = scheme_info(layers.scheme).defaults(fill, strength);
   MarkOptions options;
   options.scheme = layers.scheme;
   options.units = layers.units;
   options.flux = layers.flux;
+  options.strength = strength;
   options.format = defaults.format;
   options.scheme_options = defaults.options;
+  options.redundancy = defaults.redundancy;
+  options.cost = defaults.cost;
+  if (strength == Strength::Light && !fill) options.max_visibility = kLightVisibility;
   if (defaults.has_few_units && !fill) {
     options.layout.method = LayoutMethod::LocalSearch;
   }
@@ -333,7 +360,8 @@ MarkRequest resolve(const OptionValues& values) {
   } else {
     throw Error(ErrorCode::Usage, {}, "", "no message: give --message, --message-hex or --fill");
   }
-  request.options = resolved_options(values, scheme_of(values), request.is_fill());
+  const std::size_t bytes = request.is_fill() ? 0 : request.message().size();
+  request.options = resolved_options(values, scheme_of(values), request.is_fill(), bytes);
   if (request.is_fill() && request.options.flux == LayerUse::Yes) {
     throw Error(ErrorCode::Usage, {}, "",
                 "the flux layer carries a message or its number: --fill needs a scheme of units");
@@ -350,15 +378,18 @@ std::vector<Encoding> encodings_of(const OptionValues& values) {
   for (const std::string_view scheme : scheme_names()) {
     const bool is_wanted = !is_named || (named.units != LayerUse::No && named.scheme == scheme);
     if (is_wanted) {
-      encodings.push_back(resolved_options(values, scheme, false).encoding());
-      for (const SchemeDefaults& older : scheme_info(scheme).older()) {
-        const OptionValues all = layered(with_bits(older), values);
-        Encoding encoding = resolved_options(all, scheme, false).encoding();
+      const SchemeInfo& info = scheme_info(scheme);
+      std::vector<SchemeDefaults> tried = {info.defaults(false, Strength::Normal)};
+      for (SchemeDefaults& older : info.older()) tried.push_back(std::move(older));
+      tried.push_back(info.defaults(false, Strength::Strong));
+      for (const SchemeDefaults& defaults : tried) {
+        const OptionValues all = layered(with_bits(defaults), values);
+        Encoding encoding = resolved_options(all, scheme, false, kMinMessageBytes).encoding();
         const auto same = std::find(encodings.begin(), encodings.end(), encoding);
         if (same == encodings.end()) encodings.push_back(std::move(encoding));
       }
     }
-    // after the scheme that is the quickest to read
+    // behind the scheme that is the quickest to read
     const bool is_place = scheme == scheme_names().front();
     if (is_place && named.flux != LayerUse::No) {
       encodings.push_back({std::string(kFluxScheme), {}, {}});

@@ -56,9 +56,6 @@ struct Layers {
 };
 [[nodiscard]] Layers layers_named(std::string_view name);
 
-// How much a mark may change a mesh, and how much it survives.
-enum class Strength : std::uint8_t { Light, Normal, Strong };
-
 // Returns the names by Strength: "light", "normal", "strong".
 [[nodiscard]] std::span<const std::string_view> strength_names();
 
@@ -67,7 +64,8 @@ struct MarkOptions {
   LayerUse units = LayerUse::Yes;
   LayerUse flux = LayerUse::No;
   Strength strength = Strength::Normal;
-  // The flux layer moves the surface less where MSDM2 would exceed this; 0: no limit.
+  // Every layer moves the surface less where MSDM2 of the whole mark would exceed this; 0: no
+  // limit.
   double max_visibility = 0;
   WordFormat format;
   OptionValues scheme_options;
@@ -100,8 +98,9 @@ struct MarkOptions {
 };
 
 // Returns the default options of a scheme, by its name with layers, for a message, or for fill,
-// which has no flux layer. Throws Error Usage for an unknown scheme.
-[[nodiscard]] MarkOptions default_mark_options(std::string_view scheme, bool fill);
+// which has no flux layer and one strength. Throws Error Usage for an unknown scheme.
+[[nodiscard]] MarkOptions default_mark_options(std::string_view scheme, bool fill,
+                                               Strength strength = Strength::Normal);
 
 // Returns all options of marking in the order of help and records: the payload ("message",
 // "message_hex", "fill"), the scheme, the options of all schemes, layout, assignment.

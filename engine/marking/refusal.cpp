@@ -2,6 +2,8 @@
 
 #include <cstdio>
 
+#include "engine/marking/way_out.h"
+
 namespace triglyph {
 namespace {
 
@@ -66,7 +68,12 @@ std::string too_small_for_fill(const Marking& marking, const MarkOptions& option
          options.scheme + " can carry a part";
 }
 
-std::string too_visible(const WayOut& way_out) {
+std::string too_visible(const Marking& marking) {
+  if (marking.visibility > 0) {
+    return "the mark would have an MSDM2 of " + short_text(marking.visibility) +
+           "; --max-visibility " + to_text(rounded_up(marking.visibility)) + " would do";
+  }
+  const WayOut& way_out = marking.way_out;
   return "some part needs a move of " + short_text(way_out.move_needed_percent) +
          " % of the diagonal; --max-move " + to_text(way_out.max_move_percent) + " would do";
 }
@@ -121,7 +128,7 @@ std::string refusal(const Marking& marking, const MarkRequest& request, double n
     case MarkStatus::AlreadyMarked:
       return carries_mark(*marking.found);
     case MarkStatus::TooVisible:
-      return too_visible(marking.way_out);
+      return too_visible(marking);
     case MarkStatus::TooCoarse:
       return too_coarse(marking.way_out, number_step);
     case MarkStatus::NoFlux:

@@ -93,7 +93,8 @@ WayOut way_out_of_too_coarse(const MarkTask& task) {
   WayOut way_out;
   const double most = widest_step(task.options.scheme);
   MarkOptions options = task.options;
-  const OptionValues defaults = scheme_info(options.scheme).defaults(false).options;
+  const OptionValues defaults =
+      scheme_info(options.scheme).defaults(false, options.strength).options;
   double step = number_in(options.scheme_options, "step", number_in(defaults, "step", most));
   const MarkTask wider{task.surface, task.payload, task.key, options, task.numbers};
   for (step = rounded_up(kRaiseStep * step); step <= most; step = rounded_up(kRaiseStep * step)) {

@@ -91,11 +91,12 @@ double gaussian(const Vec3& a, const Vec3& b, double deviation) {
   return std::exp(-(a - b).sqrnorm() / (2 * deviation * deviation));
 }
 
-// Returns the distortion at every point.
-std::vector<double> local_distortion(const Matched& m, const Window& window, double exponent) {
+// Returns the distortion at every point, or 0 at all but one in so many.
+std::vector<double> local_distortion(const Matched& m, const Window& window, double exponent,
+                                     std::size_t one_in = 1) {
   std::vector<double> distortion(m.positions.size(), 0);
   parallel_walks(m.positions, m.graph, [&](SurfaceWalk& walk, std::uint32_t centre) {
-    if (m.graph.around(centre).empty()) return;
+    if (centre % one_in != 0 || m.graph.around(centre).empty()) return;
     std::vector<Sample> samples{{m.curvatures[centre], m.curvatures_there[centre], 1, 1}};
     walk.visit(
         centre, window.radius,
@@ -113,12 +114,12 @@ std::vector<double> local_distortion(const Matched& m, const Window& window, dou
   return distortion;
 }
 
-// Returns the power mean, with exponent 3, over the points that have edges.
-double pooled(std::span<const double> distortion, const EdgeGraph& graph) {
+// Returns the power mean, with exponent 3, over one in so many of the points that have edges.
+double pooled(std::span<const double> distortion, const EdgeGraph& graph, std::size_t one_in = 1) {
   double sum = 0;
   double count = 0;
   for (std::uint32_t p = 0; p < distortion.size(); ++p) {
-    if (graph.around(p).empty()) continue;
+    if (p % one_in != 0 || graph.around(p).empty()) continue;
     sum += distortion[p] * distortion[p] * distortion[p];
     count += 1;
   }
@@ -153,7 +154,8 @@ double interpolated(const Mesh& mesh, std::span<const double> values, const Clos
 
 constexpr std::array<double, 3> kScales = {0.002, 0.003, 0.004};
 
-double msdm2_one_way(const Mesh& here, const Mesh& there) {
+double msdm2_one_way(const Mesh& here, const Mesh& there, std::size_t at_most) {
+  const std::size_t one_in = std::max<std::size_t>(1, (here.positions.size() - 1) / at_most + 1);
   const EdgeGraph graph = edge_graph(here);
   const EdgeGraph graph_there = edge_graph(there);
   const double size = longest_side(here.positions);
@@ -179,10 +181,10 @@ double msdm2_one_way(const Mesh& here, const Mesh& there) {
       matched[p] = interpolated(there, of_other, nearest[p]);
     }
     const auto distortion = local_distortion({here.positions, graph, curvatures, places, matched},
-                                             {5 * radius, 2.5 * radius}, 1);
+                                             {5 * radius, 2.5 * radius}, 1, one_in);
     for (std::size_t p = 0; p < sum.size(); ++p) sum[p] += distortion[p] / kScales.size();
   }
-  return pooled(sum, graph);
+  return pooled(sum, graph, one_in);
 }
 
 }  // namespace
@@ -202,11 +204,11 @@ double msdm(const Mesh& first, const Mesh& second) {
          2;
 }
 
-double msdm2(const Mesh& first, const Mesh& second) {
+double msdm2(const Mesh& first, const Mesh& second, std::size_t at_most) {
   if (first.triangles.empty() || second.triangles.empty()) {
     throw Error(ErrorCode::Usage, {}, "", "a mesh without faces has no structure to compare");
   }
-  return (msdm2_one_way(first, second) + msdm2_one_way(second, first)) / 2;
+  return (msdm2_one_way(first, second, at_most) + msdm2_one_way(second, first, at_most)) / 2;
 }
 
 }  // namespace triglyph

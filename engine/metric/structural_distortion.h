@@ -6,6 +6,9 @@
 // published ones in the second digit.
 #pragma once
 
+#include <cstddef>
+#include <limits>
+
 #include "engine/mesh/mesh.h"
 
 namespace triglyph {
@@ -24,8 +27,13 @@ namespace triglyph {
 // with the nearest place on the other, at curvature radii of 0.002, 0.003 and 0.004 D and windows
 // five times as wide, where D belongs to the mesh whose points are compared. The result is the
 // average of both directions. Throws Error Usage if a mesh has no faces. O(points * edges in a
-// window).
+// window); of a mesh of more than `at_most` points the windows about fewer, one in so many, stand
+// for all.
 // Lavoue, A multiscale metric for 3D mesh visual quality assessment. CGF 30(5) (2011).
-[[nodiscard]] double msdm2(const Mesh& first, const Mesh& second);
+[[nodiscard]] double msdm2(const Mesh& first, const Mesh& second,
+                           std::size_t at_most = std::numeric_limits<std::size_t>::max());
+
+// So many windows tell the visibility of a mark to some percent: it covers the whole surface.
+inline constexpr std::size_t kWindowsSeen = 20'000;
 
 }  // namespace triglyph

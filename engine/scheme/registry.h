@@ -16,11 +16,13 @@
 
 namespace triglyph {
 
-// The defaults of a scheme: for a message, or for the paper's experiment (--fill), in which every
-// unit carries a part of its own and cells need only survive rounding.
+// The defaults of a scheme: for a message at some strength, or for the paper's experiment (--fill),
+// in which every unit carries a part of its own and cells need only survive rounding.
 struct SchemeDefaults {
-  WordFormat format;     // with fill, its subscript bits are the most that are used
-  OptionValues options;  // every option of the scheme
+  WordFormat format;              // with fill, its subscript bits are the most that are used
+  OptionValues options;           // every option of the scheme
+  std::uint32_t redundancy = 32;  // units wanted per part; 0: as many as there are
+  CostFunction cost = CostFunction::Displacement;
   // Says whether units are scarce: it then pays to search long for more of them, and all are used,
   // even those that move farther.
   bool has_few_units = false;
@@ -29,7 +31,7 @@ struct SchemeDefaults {
 struct SchemeInfo {
   std::string_view name;
   std::vector<OptionSpec> options;
-  SchemeDefaults (*defaults)(bool fill);
+  SchemeDefaults (*defaults)(bool fill, Strength strength);  // fill has one strength
   // Returns the defaults for a message of older generations, newest first; an option that only
   // newer ones know has the value that means the same.
   std::vector<SchemeDefaults> (*older)();

@@ -17,6 +17,9 @@ enum class CostFunction {
   Normal,     // change of a face's normal times the root of its area: what shading shows
 };
 
+// How much a mark may change a mesh, and how much it survives.
+enum class Strength : std::uint8_t { Light, Normal, Strong };
+
 // Returns the names by CostFunction: "displacement", "rms", "hausdorff", "normal".
 [[nodiscard]] std::span<const std::string_view> cost_names();
 [[nodiscard]] std::string_view name_of(CostFunction cost);

@@ -13,6 +13,7 @@
 #include "engine/marking/refusal.h"
 #include "engine/marking/verify_file.h"
 #include "engine/metric/deformation.h"
+#include "engine/metric/structural_distortion.h"
 #include "manifests/record.h"
 #include "tests/flux/flux_shapes.h"
 #include "tests/support/temp_folder.h"
@@ -130,6 +131,38 @@ TEST(Layers, StrengthMovesTheSurfaceMore) {
     EXPECT_GT(marking.flux->rms_percent, 1.2 * last) << strength;
     last = marking.flux->rms_percent;
   }
+}
+
+// What each layer may lack is made up for: the mark of both exceeds the budget of neither.
+TEST(Layers, KeepWithinTheVisibilityAskedFor) {
+  const Mesh& mesh = shape();
+  for (const char* scheme : {"auto", "flux+tsq", "tsq", "aie"}) {
+    const MarkRequest free = resolve({{"scheme", scheme}, {"message", "leak 4711"}});
+    const double seen = msdm2(mesh, {marked(mesh, free).positions, mesh.triangles});
+    const MarkRequest limited =
+        resolve({{"scheme", scheme}, {"message", "leak 4711"}, {"max_visibility", 0.7 * seen}});
+    const Marking marking = marked(mesh, limited);
+    ASSERT_EQ(marking.status, MarkStatus::Marked) << scheme << refusal(marking, limited, 0);
+    const double visibility = msdm2(mesh, {marking.positions, mesh.triangles});
+    EXPECT_LE(visibility, 0.7 * seen * 1.0001) << scheme;
+    EXPECT_GT(visibility, 0) << scheme;
+  }
+}
+
+TEST(Layers, AreRefusedWhereNoMarkKeepsWithinTheVisibility) {
+  const MarkRequest request =
+      resolve({{"scheme", "tsq"}, {"message", "leak 4711"}, {"max_visibility", 1e-6}});
+  const Marking marking = marked(shape(), request);
+  EXPECT_EQ(marking.status, MarkStatus::TooVisible);
+  EXPECT_NE(refusal(marking, request, 0).find("--max-visibility"), std::string::npos);
+}
+
+TEST(Layers, OfALightMarkAreNotSeen) {
+  const MarkRequest request =
+      resolve({{"scheme", "auto"}, {"message", "leak 4711"}, {"strength", "light"}});
+  const Marking marking = marked(shape(), request);
+  ASSERT_EQ(marking.status, MarkStatus::Marked);
+  EXPECT_LE(msdm2(shape(), {marking.positions, shape().triangles}), 0.05);
 }
 
 TEST(Layers, OfAFileAreWrittenReadBackRecordedAndVerified) {

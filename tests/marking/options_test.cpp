@@ -1,5 +1,6 @@
 #include "engine/marking/options.h"
 
+#include <algorithm>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -90,23 +91,26 @@ TEST(MarkOptions, OptionsOfAnotherSchemeContradictTheSchemeInUse) {
 
 TEST(MarkOptions, AReaderThatIsToldNothingTriesEveryScheme) {
   const std::vector<Encoding> all = encodings_of({});
-  // flux comes after the scheme that is the quickest to read, older generations of iie at the end
-  ASSERT_EQ(all.size(), scheme_names().size() + 2);
-  EXPECT_EQ(all[1].scheme, kFluxScheme);
-  for (std::size_t i = 0; i < scheme_names().size(); ++i) {
-    EXPECT_EQ(all[i == 0 ? 0 : i + 1], default_mark_options(scheme_names()[i], false).encoding());
+  // tsq and its strong marks, flux, aie, iie, its older generation, its strong marks
+  ASSERT_EQ(all.size(), 7U);
+  EXPECT_EQ(all[2].scheme, kFluxScheme);
+  for (const std::string_view scheme : scheme_names()) {
+    for (const Strength strength : {Strength::Light, Strength::Normal, Strength::Strong}) {
+      const Encoding encoding = default_mark_options(scheme, false, strength).encoding();
+      EXPECT_EQ(std::count(all.begin(), all.end(), encoding), 1) << scheme;
+    }
   }
   const std::vector<Encoding> iie = encodings_of({{"scheme", std::string("iie")}});
-  EXPECT_EQ(iie, std::vector<Encoding>(all.end() - 2, all.end()));
+  EXPECT_EQ(iie, std::vector<Encoding>(all.end() - 3, all.end()));
   EXPECT_EQ(encodings_of({{"scheme", std::string("flux")}}).size(), 1U);
-  EXPECT_EQ(encodings_of({{"scheme", std::string("flux+iie")}}).size(), 3U);
+  EXPECT_EQ(encodings_of({{"scheme", std::string("flux+iie")}}).size(), 4U);
 }
 
 // Old marks first-generation options were recorded for are found without naming the generation.
 TEST(MarkOptions, OptionsOfAReaderApplyToEveryGeneration) {
   const std::vector<Encoding> both =
       encodings_of({{"scheme", std::string("iie")}, {"radius", 0.25}});
-  ASSERT_EQ(both.size(), 2U);
+  ASSERT_EQ(both.size(), 3U);
   EXPECT_TRUE(both[0].format.is_spread);
   EXPECT_EQ(both[1].format, (WordFormat{0, 5, 4}));
   EXPECT_EQ(both[1].scheme_options.at("step"), OptionValue(0.007));
@@ -116,7 +120,25 @@ TEST(MarkOptions, OptionsOfAReaderApplyToEveryGeneration) {
   // and one that is named stands alone
   EXPECT_EQ(encodings_of({{"scheme", std::string("iie")}, {"iie_encoding", std::string("global")}})
                 .back(),
-            encodings_of({{"scheme", std::string("iie")}}).back());
+            encodings_of({{"scheme", std::string("iie")}})[1]);
+}
+
+// A message that is too long for the strong format is marked with bits that number its parts.
+TEST(MarkOptions, AStrongMarkHoldsAnyMessage) {
+  const OptionValues strong = {{"scheme", std::string("tsq")}, {"strength", std::string("strong")}};
+  const auto resolved = [&](std::size_t bytes) {
+    OptionValues values = strong;
+    values.emplace("message", std::string(bytes, 'm'));
+    return resolve(values).options;
+  };
+  const MarkOptions usual = default_mark_options("tsq", false);
+  for (const std::size_t bytes : {1U, 16U, 27U, 28U, 256U}) {
+    const MarkOptions options = resolved(bytes);
+    EXPECT_EQ(options.redundancy, 0U);
+    EXPECT_EQ(options.encoding() == usual.encoding(), bytes > 27) << bytes;
+    const std::vector<Encoding> tried = encodings_of({});
+    EXPECT_EQ(std::count(tried.begin(), tried.end(), options.encoding()), 1) << bytes;
+  }
 }
 
 TEST(EstimateMemory, KnowsFormatsInAnyCaseAndTheCostsOfFill) {

@@ -149,5 +149,15 @@ TEST(Compare, RefusesWhatTwoMeshesDoNotHave) {
   }
 }
 
+TEST(StructuralDistortion, FewWindowsStandForAll) {
+  const Mesh ball = test::bumpy_ball().mesh;
+  const Mesh other = test::shaken(ball, 0.002, 3);
+  const double all = msdm2(ball, other);
+  EXPECT_EQ(msdm2(ball, other, ball.positions.size()), all);
+  const double some = msdm2(ball, other, ball.positions.size() / 7);
+  EXPECT_NE(some, all);
+  EXPECT_NEAR(some, all, 0.1 * all);
+}
+
 }  // namespace
 }  // namespace triglyph

@@ -32,7 +32,7 @@ class EveryScheme : public testing::TestWithParam<std::string_view> {
   static bool is_iie() { return name() == "iie"; }
   static SchemeDefaults defaults() {
     if (GetParam() == kGlobalIie) return scheme_info("iie").older().at(0);
-    return scheme_info(name()).defaults(false);
+    return scheme_info(name()).defaults(false, Strength::Normal);
   }
 
   // Every place is a candidate, sizes are fixed: what is embedded is read to the last bit.
@@ -371,7 +371,7 @@ TEST(Schemes, HaveNames) {
 // What applies is written down whole, so that a record says all that a reader needs.
 TEST_P(EveryScheme, DefaultsNameEveryOption) {
   for (const bool fill : {false, true}) {
-    const OptionValues values = scheme_info(name()).defaults(fill).options;
+    const OptionValues values = scheme_info(name()).defaults(fill, Strength::Normal).options;
     EXPECT_EQ(values.size(), scheme_info(name()).options.size());
     for (const OptionSpec& spec : scheme_info(name()).options) {
       ASSERT_TRUE(values.contains(spec.key)) << spec.key;

@@ -7,6 +7,7 @@
 
 #include "engine/attack/stored_mesh.h"
 #include "engine/base/error.h"
+#include "engine/samples/sample_shapes.h"
 #include "engine/survival/trial.h"
 #include "tests/support/shapes.h"
 
@@ -40,6 +41,22 @@ TEST(Survival, TellsHarmlessAttacksFromDeadlyOnes) {
   EXPECT_EQ(result.attacks[3].recovered, 0U);
   EXPECT_GT(result.attacks[3].worst_wrong_bits(), 0.25);
   EXPECT_EQ(result.attacks[3].worst_false_alarm, 0);
+}
+
+// A strong mark in units survives what a normal one does not, and can be cropped besides.
+TEST(Survival, OfStrongMarksIsGreater) {
+  const auto attacked = attacks({"noise:0.1", "quantise:10", "crop:50+noise:0.05", "smooth:1"});
+  const Mesh mesh = make_sample_shape(SampleShape::Closed, 16000, 3);
+  for (const char* strength : {"normal", "strong"}) {
+    const MarkRequest request =
+        resolve({{"scheme", "tsq"}, {"message", "survives"}, {"strength", strength}});
+    const SchemeSurvival result = survive(mesh, request, attacked, {.keys = 2});
+    ASSERT_EQ(result.marked, 2U) << result.refusal;
+    const bool is_strong = strength == std::string("strong");
+    for (const AttackSurvival& attack : result.attacks) {
+      EXPECT_EQ(attack.recovered, is_strong ? 2U : 0U) << attack.attack << " " << strength;
+    }
+  }
 }
 
 TEST(Survival, MeasuresTheMarkBeforeTheAttacks) {

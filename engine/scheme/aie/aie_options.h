@@ -26,6 +26,10 @@ struct AieOptions : SchemeOptions {
   [[nodiscard]] static WordFormat format(bool fill) {
     return fill ? WordFormat{6, 13, 5} : WordFormat{6, 8, 10};
   }
+  // Wider cells would be seen long before they survived more than a little noise: a strong mark has
+  // more units.
+  [[nodiscard]] static AieOptions strong() { return defaults(false); }
+  static constexpr WordFormat kStrongFormat{6, 8, 10};
   static constexpr bool kHasFewUnits = false;
 
   [[nodiscard]] static OptionTable<AieOptions> table() {

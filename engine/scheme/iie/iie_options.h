@@ -47,6 +47,13 @@ struct IieOptions : SchemeOptions {
   [[nodiscard]] static WordFormat format(bool fill) {
     return fill ? WordFormat{1, 9, 6} : WordFormat{0, 10, 3, true};
   }
+  // Wider cells survive more noise.
+  [[nodiscard]] static IieOptions strong() {
+    IieOptions options = defaults(false);
+    options.step = 0.004;
+    return options;
+  }
+  static constexpr WordFormat kStrongFormat{0, 10, 3, true};
   // What messages of generation 1 used.
   [[nodiscard]] static IieOptions first_generation() {
     IieOptions options;

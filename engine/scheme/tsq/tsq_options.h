@@ -14,6 +14,11 @@ struct TsqOptions : SchemeOptions {
   [[nodiscard]] static WordFormat format(bool fill) {
     return fill ? WordFormat{6, 13, 9} : WordFormat{6, 8, 9};
   }
+  // Cells wide enough for noise of 0.15 %, and fewer bits in a unit, so that more units keep all of
+  // theirs. Five subscript bits number the parts of a message of up to 27 bytes and, of up to 16,
+  // as many again that carry parities.
+  [[nodiscard]] static TsqOptions strong() { return {{.step = 0.15}}; }
+  static constexpr WordFormat kStrongFormat{3, 5, 8};
   static constexpr bool kHasFewUnits = false;
 
   [[nodiscard]] static OptionTable<TsqOptions> table() { return {step_option<TsqOptions>(0.5)}; }
