@@ -187,6 +187,7 @@ Json to_json(const Record& record) {
                      {"displacement_rms", file.displacement_rms}});
   }
   if (file.flux) json["flux"] = flux_of(*file.flux);
+  if (file.digits > 0) json["digits"] = file.digits;
   json.update(Json{{"input_hash", file.input_hash},
                    {"output_hash", file.output_hash},
                    {"key", file.key_fingerprint},
@@ -240,6 +241,7 @@ Record parse_record(const std::string& line) try {
   file.output_hash = json.at("output_hash").get<std::string>();
   file.key_fingerprint = json.at("key").get<std::string>();
   if (json.contains("flux")) file.flux = flux_in(json.at("flux"));
+  file.digits = json.value("digits", 0);
   if (json.contains("units")) file.units = units_in(json.at("units"), file.parts);
   if (json.contains("run")) read_run(json.at("run"), record);
   return record;

@@ -16,7 +16,7 @@ namespace {
 
 Mesh marked(const Mesh& mesh, const std::string& scheme) {
   const Halfedges halfedges = build_halfedges(mesh);
-  const SchemeDefaults defaults = scheme_info(scheme).defaults(false);
+  const SchemeDefaults defaults = scheme_info(scheme).defaults(false, Strength::Normal);
   MarkOptions options;
   options.scheme = scheme;
   options.format = defaults.format;

@@ -19,6 +19,7 @@ namespace triglyph {
 namespace {
 
 constexpr std::size_t kStyleSample = 4096;    // vertices from which the number style is learned
+constexpr int kMostDigits = 17;               // a double holds no more
 constexpr std::size_t kPatchBlock = 1 << 16;  // vertices patched by one thread
 
 FileContent read_content(const Source& source) {
@@ -51,11 +52,13 @@ struct MeshFile::Content {
   std::span<const char> bytes;
   FileFormat format = FileFormat::Obj;
   CoordinatePlaces places;
-  std::array<NumberStyle, 3> style;           // of each axis, in text
+  std::array<NumberStyle, 3> learnt;          // the style of each axis, in text
+  std::array<NumberStyle, 3> style;           // of coordinates that are moved
   std::array<int, 3> axis_order = {0, 1, 2};  // in the order of the file
   Vec3 magnitude = {0, 0, 0};
   std::vector<std::uint32_t> point_of_vertex;
   std::size_t face_count = 0;
+  Faces faces;  // only of a file that has polygons
   Mesh mesh;
 
   void fill(const std::filesystem::path& path);
@@ -84,6 +87,7 @@ void MeshFile::Content::fill(const std::filesystem::path& path) {
   point_of_vertex = std::move(welded.point_of_vertex);
   mesh.positions = std::move(welded.points);
   mesh.triangles = triangulate(content.faces, point_of_vertex, mesh.positions);
+  if (content.faces.corners.size() > 3 * face_count) faces = std::move(content.faces);
   for (const Vec3& p : mesh.positions) {
     for (int axis = 0; axis < 3; ++axis) {
       magnitude[axis] = std::max(magnitude[axis], std::abs(p[axis]));
@@ -104,10 +108,11 @@ void MeshFile::Content::learn_styles() {
       tokens.push_back(number_at(bytes, places.offset(v, axis)));
     }
   }
-  const NumberStyle learnt = learn_style(tokens);
+  const NumberStyle shared = learn_style(tokens);
   for (int axis = 0; axis < 3; ++axis) {
-    style[axis] = is_integer(places.scalar[axis]) ? NumberStyle{} : learnt;
+    learnt[axis] = is_integer(places.scalar[axis]) ? NumberStyle{} : shared;
   }
+  style = learnt;
 }
 
 double MeshFile::Content::round(double value, int axis) const {
@@ -217,12 +222,36 @@ const Mesh& MeshFile::mesh() const {
   return content_->mesh;
 }
 
+bool MeshFile::has_polygons() const {
+  return !content_->faces.ends.empty();
+}
+
+std::vector<Triangle> MeshFile::triangles_at(std::span<const Vec3> positions) const {
+  check(positions.size() == mesh().positions.size(), "as many positions as points");
+  if (!has_polygons()) return mesh().triangles;
+  return triangulate(content_->faces, content_->point_of_vertex, positions);
+}
+
 std::span<const std::uint32_t> MeshFile::point_of_vertex() const {
   return content_->point_of_vertex;
 }
 
 Vec3 MeshFile::round(const Vec3& point) const {
   return {content_->round(point[0], 0), content_->round(point[1], 1), content_->round(point[2], 2)};
+}
+
+bool MeshFile::is_decimal() const {
+  const CoordinatePlaces& places = content_->places;
+  return places.is_text && !content_->point_of_vertex.empty() && !is_integer(places.scalar[0]);
+}
+
+void MeshFile::set_more_digits(int count) {
+  if (!is_decimal()) return;
+  content_->style = content_->learnt;
+  for (NumberStyle& style : content_->style) {
+    style.decimals += count;
+    style.significant = std::min(style.significant + count, kMostDigits);
+  }
 }
 
 double MeshFile::number_step() const {

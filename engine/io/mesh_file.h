@@ -50,11 +50,26 @@ class MeshFile {
   // they start at; triangles that repeat a point are left out.
   [[nodiscard]] const Mesh& mesh() const;
 
+  // Says whether some face has more than three corners.
+  [[nodiscard]] bool has_polygons() const;
+
+  // Returns the triangles of mesh() if its points lay elsewhere: how polygons are cut depends on
+  // that. Precondition: as many positions as points. O(corners).
+  [[nodiscard]] std::vector<Triangle> triangles_at(std::span<const Vec3> positions) const;
+
   // Returns the point of every vertex of the file.
   [[nodiscard]] std::span<const std::uint32_t> point_of_vertex() const;
 
+  // Says whether coordinates are decimal numbers in text.
+  [[nodiscard]] bool is_decimal() const;
+
+  // Gives coordinates that are moved so many digits more than the file's have; of decimal numbers
+  // only. Precondition: count >= 0.
+  void set_more_digits(int count);
+
   // Returns the nearest point that the file's number format can represent. Text files get no more
-  // decimals and no more significant digits than they have, so a file of "%.6f" or "%g" stays one.
+  // decimals and no more significant digits than they have, so a file of "%.6f" or "%g" stays one,
+  // unless set_more_digits() allows it.
   [[nodiscard]] Vec3 round(const Vec3& point) const;
 
   // Returns the largest distance, in model units along one axis, between neighbouring numbers of

@@ -82,7 +82,7 @@ Marking mark_units_unseen(const MarkTask& task, MarkStages& stages, const Mesh& 
       marking.status = MarkStatus::TooVisible;
       break;
     }
-    const MarkTask again{task.surface, task.payload, task.key, fewer, task.numbers};
+    const MarkTask again{task.surface, task.payload, task.key, fewer, task.output};
     MarkStages fewer_units(again);
     mark_units(again, fewer_units, false);
     marking = std::move(fewer_units.marking());
@@ -90,10 +90,32 @@ Marking mark_units_unseen(const MarkTask& task, MarkStages& stages, const Mesh& 
   return marking;
 }
 
+// A mesh with the positions of its layers so far, as a reader cuts its faces into triangles.
+class MovedMesh {
+ public:
+  MovedMesh(const MarkTask& task, std::span<const Vec3> positions)
+      : mesh_{{positions.begin(), positions.end()}, task.surface.mesh.triangles} {
+    if (task.output.recut) {
+      mesh_.triangles = task.output.recut(positions);
+      if (mesh_.triangles != task.surface.mesh.triangles) own_ = build_halfedges(mesh_);
+    }
+    halfedges_ = own_ ? &*own_ : &task.surface.halfedges;
+  }
+  MovedMesh(const MovedMesh&) = delete;
+  MovedMesh& operator=(const MovedMesh&) = delete;
+
+  [[nodiscard]] Surface surface() const { return {mesh_, *halfedges_}; }
+
+ private:
+  Mesh mesh_;
+  std::optional<Halfedges> own_;
+  const Halfedges* halfedges_;
+};
+
 // Says whether a reader finds the flux layer on the surface with other positions.
 bool reads(const FluxMark& mark, std::span<const Vec3> positions, const MarkTask& task) {
-  const Mesh mesh{{positions.begin(), positions.end()}, task.surface.mesh.triangles};
-  const auto found = read_flux({mesh, task.surface.halfedges}, task.key, FluxEffort::AsItIs);
+  const MovedMesh moved(task, positions);
+  const auto found = read_flux(moved.surface(), task.key, FluxEffort::AsItIs);
   return found && found->payload == mark.payload;
 }
 
@@ -102,15 +124,16 @@ bool reads(const FluxMark& mark, std::span<const Vec3> positions, const MarkTask
 Marking with_units(const MarkTask& task, Marking flux_alone) {
   const MarkOptions& options = task.options;
   if (options.units == LayerUse::No) return flux_alone;
-  const Mesh mesh{flux_alone.positions, task.surface.mesh.triangles};
+  const MovedMesh with_flux(task, flux_alone.positions);
+  const Surface surface = with_flux.surface();
   MarkOptions rest = options;
   double moved_percent = 0;  // by the flux layer; the limit is for both
   if (options.max_move_percent.value_or(0) > 0) {
-    const Displacement moves = displacement(task.surface.mesh.positions, mesh.positions);
+    const Displacement moves = displacement(task.surface.mesh.positions, surface.mesh.positions);
     moved_percent = 100 * moves.max / surface_diagonal(task.surface.mesh);
     rest.max_move_percent = *options.max_move_percent - moved_percent;
   }
-  const MarkTask moved{{mesh, task.surface.halfedges}, task.payload, task.key, rest, task.numbers};
+  const MarkTask moved{surface, task.payload, task.key, rest, task.output};
   MarkStages stages(moved);
   Marking marking =
       mark_units_unseen(moved, stages, task.surface.mesh, options.units == LayerUse::Yes);
@@ -130,11 +153,12 @@ Marking with_units(const MarkTask& task, Marking flux_alone) {
 }  // namespace
 
 Marking mark(const Surface& surface, const Payload& payload, const Key& key,
-             const MarkOptions& options, const Rounding& rounding, double number_step) {
+             const MarkOptions& options, const Rounding& rounding, double number_step,
+             const Recut& recut) {
   validate(options.format);
   const auto* message = std::get_if<Message>(&payload);
   if (message != nullptr) check_message(options.format, message->size());
-  const MarkTask task{surface, payload, key, options, {rounding, number_step}};
+  const MarkTask task{surface, payload, key, options, {rounding, number_step, recut}};
   MarkStages stages(task);
   if (message != nullptr && !options.remark) {
     if (auto found = mark_before(task, stages)) {

@@ -11,11 +11,12 @@ namespace triglyph {
 
 // Marks a mesh with a message, or fills it. `number_step`, in model units, is the distance between
 // neighbouring numbers of the output; it tells a mesh that is too small from a file that is too
-// coarse. Does not change the surface, and does not read the mark back. Throws Error Usage for a
-// message that is empty, longer than 256 bytes or in need of more parts than the subscript bits
-// number, and for options out of range. O(triangles + units * parts) plus the assignment.
+// coarse. Units are only where `recut` leaves the triangles as they are. Does not change the
+// surface, and does not read the mark back. Throws Error Usage for a message that is empty, longer
+// than 256 bytes or in need of more parts than the subscript bits number, and for options out of
+// range. O(triangles + units * parts) plus the assignment.
 [[nodiscard]] Marking mark(const Surface& surface, const Payload& payload, const Key& key,
-                           const MarkOptions& options, const Rounding& rounding,
-                           double number_step);
+                           const MarkOptions& options, const Rounding& rounding, double number_step,
+                           const Recut& recut = {});
 
 }  // namespace triglyph

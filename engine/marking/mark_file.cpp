@@ -217,11 +217,16 @@ void FileMarking::mark_as(const MarkOptions& options, const Key& key) {
   const MeshFile& file = *work_->file;
   const Surface surface{file.mesh(), *work_->halfedges};
   const auto rounding = [&](const Vec3& point) { return file.round(point); };
-  work_->marking =
-      triglyph::mark(surface, result_.request.payload, key, options, rounding, file.number_step());
+  const auto recut = [&](std::span<const Vec3> positions) { return file.triangles_at(positions); };
+  work_->marking = triglyph::mark(surface, result_.request.payload, key, options, rounding,
+                                  file.number_step(), file.has_polygons() ? Recut(recut) : Recut());
   describe(work_->marking);
   if (const auto status = refused_status(work_->marking.status)) {
-    end(*status, refusal(work_->marking, result_.request, file.number_step()));
+    std::string reason = refusal(work_->marking, result_.request, file.number_step());
+    if (*status == FileStatus::TooCoarse && file.is_decimal()) {
+      reason += "; --digits " + std::to_string(result_.digits + 1) + " gives it finer ones";
+    }
+    end(*status, reason);
   }
 }
 
@@ -239,6 +244,15 @@ void FileMarking::mark(const Key& key) noexcept {
     if (result_.request.is_fill()) {
       options.scheme_options = fixed_for(work_->file->mesh(), options.scheme_options);
     }
+    work_->file->set_more_digits(options.digits.value_or(0));
+    result_.digits = work_->file->is_decimal() ? options.digits.value_or(0) : 0;
+    mark_as(options, key);
+    const bool lacks_digits = result_.status == FileStatus::TooCoarse && work_->file->is_decimal();
+    if (!lacks_digits || options.digits) return;
+    result_.status = FileStatus::Marked;
+    result_.error.clear();
+    result_.digits = 1;
+    work_->file->set_more_digits(result_.digits);
     mark_as(options, key);
   });
 }

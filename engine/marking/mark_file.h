@@ -74,6 +74,7 @@ struct MarkedFile {
   std::uint32_t units_assigned = 0;  // given a word
   std::uint32_t units_embedded = 0;  // whose word was read back from the output
   std::optional<FluxMark> flux;      // the flux layer
+  int digits = 0;                    // more than the file's that moved coordinates have
   double cost_max = 0;               // of the assignment, model units
   double cost_sum = 0;               // likewise
   double hausdorff = 0;              // symmetric, model units

@@ -201,7 +201,7 @@ void MarkStages::embed(const MoveLimits& limits, const Capacity& capacity, Marki
     marking.cost_sum = plan.cost_sum;
     marking.units_assigned = static_cast<std::uint32_t>(plan.placements.size());
     settle(task_.surface, scheme, capacity.units, plan.placements,
-           {task_.numbers.round, limits.cap}, marking);
+           {task_.output.round, limits.cap, task_.output.recut}, marking);
     const std::vector<Placement> lost = lost_placements(plan.placements, capacity.units, marking);
     if (lost.empty()) break;
     for (const Placement& placement : lost) assigner.rule_out(placement);
@@ -222,7 +222,7 @@ bool MarkStages::reads_back(const Marking& marking) const {
 
 MarkStatus MarkStages::status_of(const Marking& marking) const {
   const bool lost_most = 2 * marking.units_dropped > marking.units_assigned;
-  const bool is_coarse = task_.numbers.step > kCoarseStep * binding_->bound->cell_size();
+  const bool is_coarse = task_.output.step > kCoarseStep * binding_->bound->cell_size();
   if (lost_most && is_coarse) return MarkStatus::TooCoarse;
   bool has_all = marking.parts_carried == marking.parts_needed;
   if (is_fill()) has_all = marking.parts_carried > 0;

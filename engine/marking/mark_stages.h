@@ -16,10 +16,11 @@
 
 namespace triglyph {
 
-// The numbers that the output can hold.
-struct OutputNumbers {
+// What the output can hold.
+struct OutputLimits {
   const Rounding& round;
-  double step = 0;  // between neighbours, model units
+  double step = 0;  // between neighbouring numbers, model units
+  const Recut& recut;
 };
 
 // What is to be marked, with what. All must outlive what refers to it.
@@ -28,7 +29,7 @@ struct MarkTask {
   const Payload& payload;
   const Key& key;
   const MarkOptions& options;
-  OutputNumbers numbers;
+  OutputLimits output;
 };
 
 // The stages, to be run in this order. A message and fill differ in the words, in the limit of

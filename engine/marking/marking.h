@@ -75,4 +75,8 @@ struct Marking {
 // Returns the nearest point that the output can represent.
 using Rounding = std::function<Vec3(const Vec3&)>;
 
+// Returns the triangles into which a reader of the output cuts its faces if the points lie there:
+// as many as the marked surface has, in the same order. Empty: always those of the surface.
+using Recut = std::function<std::vector<Triangle>(std::span<const Vec3> positions)>;
+
 }  // namespace triglyph

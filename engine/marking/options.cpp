@@ -128,6 +128,9 @@ OptionTable<Options> make_table() {
                              "0",
                              "Share of the candidates to leave out, the most expensive ones first: "
                              "lowers capacity and visibility"),
+      count_option<Options>("digits", &Options::digits, {0, 8}, "digits", "",
+                            "Digits more than the file's that moved coordinates of text formats "
+                            "may have. Without it, none, or one where the file's are too few"),
       flag_option<Options>("remark", &Options::remark,
                            "Mark a mesh also if it carries a mark of this key already"),
       flag_option<Options>(

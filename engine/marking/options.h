@@ -89,6 +89,9 @@ struct MarkOptions {
   bool keeps_subscript_bits = false;
   // Marks a mesh also if it carries a mark of this key, scheme and word format. Fill never asks.
   bool remark = false;
+  // Digits more than the file's that moved coordinates of text files may have. Nothing: none, or
+  // one where the file's are too few for the mark.
+  std::optional<int> digits;
   bool detail = false;  // reports every unit, so that verification can locate damage
 
   [[nodiscard]] Encoding encoding() const { return {scheme, format, scheme_options}; }

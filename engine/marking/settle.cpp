@@ -92,6 +92,28 @@ class EmbeddedPlacements {
     }
   }
 
+  // Takes back every unit that moved a corner of a face that is cut otherwise now, until there is
+  // none.
+  void take_back_recut(const Recut& recut) {
+    const std::vector<Triangle>& before = surface_.mesh.triangles;
+    for (bool is_done = !recut; !is_done;) {
+      stop_point();
+      const std::vector<Triangle> now = recut(positions_);
+      if (now.size() != before.size()) return;  // by a face that repeats a point: cannot be told
+      is_done = true;
+      for (std::size_t t = 0; t < before.size(); ++t) {
+        if (now[t] == before[t]) continue;
+        for (const Triangle& triangle : {before[t], now[t]}) {
+          for (const std::uint32_t point : triangle) {
+            if (mover_[point] == kNoPlacement) continue;
+            take_back(mover_[point]);
+            is_done = false;
+          }
+        }
+      }
+    }
+  }
+
   // Takes back every unit that does not read its word with margin, from the positions as they are
   // before any of these is taken back.
   void take_back_misread(const BoundScheme& scheme, std::span<const Word> words) {
@@ -157,9 +179,13 @@ void settle(const Surface& surface, const BoundScheme& scheme, const UnitSet& un
   for (const std::uint32_t failed : embedding.failed) embedded.take_back(failed);
   embedded.round_moved(rules.round);
   if (rules.max_move > 0) embedded.take_back_far(rules.max_move);
-  embedded.take_back_flips();
+  const auto take_back_misshapen = [&] {
+    embedded.take_back_flips();
+    embedded.take_back_recut(rules.recut);
+  };
+  take_back_misshapen();
   embedded.take_back_misread(scheme, marking.words);
-  embedded.take_back_flips();
+  take_back_misshapen();
   marking.carriers = embedded.carriers();
   marking.units_dropped = static_cast<std::uint32_t>(placements.size() - marking.carriers.size());
 }

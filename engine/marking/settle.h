@@ -16,11 +16,13 @@ namespace triglyph {
 struct SettleRules {
   const Rounding& round;  // to what the output can hold
   double max_move = 0;    // the farthest that a point may move, after rounding; 0: no limit
+  const Recut& recut;     // how faces are cut into triangles
 };
 
 // Embeds the placements, rounds what moved, and takes units back until no point moved too far, no
-// face is flipped and every unit left reads its word with margin. Fills positions, carriers and
-// units_dropped of `marking`, whose words the placements index. `scheme` is bound to `surface`.
+// face is flipped or cut otherwise and every unit left reads its word with margin. Fills positions,
+// carriers and units_dropped of `marking`, whose words the placements index. `scheme` is bound to
+// `surface`.
 void settle(const Surface& surface, const BoundScheme& scheme, const UnitSet& units,
             std::span<const Placement> placements, const SettleRules& rules, Marking& marking);
 

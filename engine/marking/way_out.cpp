@@ -96,7 +96,7 @@ WayOut way_out_of_too_coarse(const MarkTask& task) {
   const OptionValues defaults =
       scheme_info(options.scheme).defaults(false, options.strength).options;
   double step = number_in(options.scheme_options, "step", number_in(defaults, "step", most));
-  const MarkTask wider{task.surface, task.payload, task.key, options, task.numbers};
+  const MarkTask wider{task.surface, task.payload, task.key, options, task.output};
   for (step = rounded_up(kRaiseStep * step); step <= most; step = rounded_up(kRaiseStep * step)) {
     options.scheme_options["step"] = step;
     MarkStages stages(wider);

@@ -58,7 +58,8 @@ TEST(Manifest, LinesOverrideDefaultsOverrideOptions) {
   EXPECT_EQ(jobs[1].request.options.cost, CostFunction::Rms);
   EXPECT_EQ(jobs[1].request.options.format, (WordFormat{4, 9, 16}));
   EXPECT_TRUE(jobs[2].request.is_fill());
-  EXPECT_EQ(jobs[2].request.options.scheme_options, scheme_info("tsq").defaults(true).options);
+  EXPECT_EQ(jobs[2].request.options.scheme_options,
+            scheme_info("tsq").defaults(true, Strength::Normal).options);
   EXPECT_EQ(jobs[2].index, 2U);
 }
 
