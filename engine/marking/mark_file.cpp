@@ -222,6 +222,14 @@ void FileMarking::mark_as(const MarkOptions& options, const Key& key) {
                                   file.number_step(), file.has_polygons() ? Recut(recut) : Recut());
   describe(work_->marking);
   if (const auto status = refused_status(work_->marking.status)) {
+    if (*status == FileStatus::TooSmall && file.has_polygons()) {
+      const Marking uncut = triglyph::mark(surface, result_.request.payload, key, options, rounding,
+                                           file.number_step());
+      if (uncut.status == MarkStatus::Marked) {
+        end(FileStatus::NotVerified, not_read_back(0, uncut.units_assigned, true));
+        return;
+      }
+    }
     std::string reason = refusal(work_->marking, result_.request, file.number_step());
     if (*status == FileStatus::TooCoarse && file.is_decimal()) {
       reason += "; --digits " + std::to_string(result_.digits + 1) + " gives it finer ones";
