@@ -48,6 +48,8 @@ constexpr int kMostCorrections = 6;
 // Faces that turn farther, degrees, make their neighbourhood follow less.
 constexpr double kMostTurn = 25;
 constexpr int kMostRounds = 3;
+// After these only faces that are turned over count, whose corners stay where they are.
+constexpr int kMostRoundsWithFlips = 6;
 constexpr double kCornerFollows = 0.35;
 constexpr double kRingFollows = 0.6;
 
@@ -253,9 +255,9 @@ std::vector<double> FluxCanvas::used_values(std::span<const Vec3> positions) con
   return result;
 }
 
-bool FluxCanvas::follow_less(std::span<const Vec3> positions) {
+bool FluxCanvas::follow_less(std::span<const Vec3> positions, bool only_flipped) {
   const std::vector<Vec3>& before = surface_.mesh.positions;
-  const double least_cosine = std::cos(kMostTurn / 180 * M_PI);
+  const double least_cosine = only_flipped ? 0 : std::cos(kMostTurn / 180 * M_PI);
   std::vector<char> corner(before.size(), 0);
   std::vector<char> ring(before.size(), 0);
   bool found = false;
@@ -274,7 +276,7 @@ bool FluxCanvas::follow_less(std::span<const Vec3> positions) {
   }
   for (std::size_t point = 0; point < before.size(); ++point) {
     if (ring[point] != 0) weights_[point] *= kRingFollows;
-    if (corner[point] != 0) weights_[point] *= kCornerFollows;
+    if (corner[point] != 0) weights_[point] *= only_flipped ? 0 : kCornerFollows;
   }
   return true;
 }
@@ -319,7 +321,9 @@ std::optional<FluxCanvas::Written> FluxCanvas::write(const FluxBits& bits, const
       if (residual < kResidual) break;
       last = residual;
     }
-    if (round == kMostRounds || !written || !follow_less(written->positions)) break;
+    const bool only_flipped = round >= kMostRounds;
+    if (round == kMostRoundsWithFlips || !written) break;
+    if (!follow_less(written->positions, only_flipped)) break;
     make_basis();
   }
   if (written && written->residual > kMostResidual) return std::nullopt;

@@ -74,8 +74,9 @@ class FluxCanvas {
   void make_basis();
   // Returns the changes under noise of some amplitude and under quantisation to so many bits.
   [[nodiscard]] std::vector<std::vector<double>> noise_of(double amplitude, int bits) const;
-  // Makes the neighbourhoods of faces that turned too far follow less; false if there are none.
-  [[nodiscard]] bool follow_less(std::span<const Vec3> positions);
+  // Makes the neighbourhoods of faces that turned too far follow less, or keeps corners of faces
+  // that are turned over in place; false if there are none.
+  [[nodiscard]] bool follow_less(std::span<const Vec3> positions, bool only_flipped);
   [[nodiscard]] std::vector<double> changes(const FluxBits& bits, const Dither& dither,
                                             double step) const;
   [[nodiscard]] std::vector<Vec3> moved(std::span<const double> unknowns) const;

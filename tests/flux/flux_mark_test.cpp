@@ -6,6 +6,7 @@
 #include "engine/attack/stored_mesh.h"
 #include "engine/flux/flux_reading.h"
 #include "engine/geometry/box.h"
+#include "engine/marking/settle.h"
 #include "engine/metric/deformation.h"
 #include "tests/flux/flux_shapes.h"
 #include "tests/support/arenas.h"
@@ -133,6 +134,23 @@ TEST(FluxMark, LeavesTheShadingAlone) {
     worst = std::max(worst, 1 - dot(old_normal.normalized(), new_normal.normalized()));
   }
   EXPECT_LT(worst, 1 - std::cos(12 / 180.0 * M_PI));
+}
+
+// Needles, whose height any move exceeds, stay the right way round.
+TEST(FluxMark, TurnsNoNeedleOver) {
+  Mesh mesh = original();
+  std::vector<char> is_taken(mesh.positions.size(), 0);
+  for (std::size_t t = 0; t < mesh.triangles.size(); t += 11) {
+    const auto [a, b, c] = mesh.triangles[t];
+    if (is_taken[a] + is_taken[b] + is_taken[c] > 0) continue;
+    is_taken[a] = is_taken[b] = is_taken[c] = 1;
+    const Vec3 middle = (mesh.positions[a] + mesh.positions[b]) / 2;
+    mesh.positions[c] = middle + 1e-3 * (mesh.positions[c] - middle);
+  }
+  mesh = stored(mesh);
+  const FluxMarking marking = marked(mesh);
+  ASSERT_EQ(marking.obstacle, FluxObstacle::None);
+  EXPECT_TRUE(flipped_triangles(mesh.triangles, mesh.positions, marking.positions).empty());
 }
 
 TEST(FluxPayload, ShowsMessagesAndNumbers) {
