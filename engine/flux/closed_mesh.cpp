@@ -31,8 +31,8 @@ class Components {
 
 }  // namespace
 
-ClosedMesh::ClosedMesh(const Surface& surface)
-    : points_(surface.mesh.positions.size()), triangles_(surface.mesh.triangles) {
+ClosedMesh::ClosedMesh(const Surface& surface, EdgeWeight weight)
+    : weight_(weight), points_(surface.mesh.positions.size()), triangles_(surface.mesh.triangles) {
   const Halfedges& halfedges = surface.halfedges;
   std::vector<Halfedge> boundary;  // on the side of the hole
   for (std::uint32_t edge = 0; edge < halfedges.edge_count(); ++edge) {
@@ -58,14 +58,18 @@ ClosedMesh::ClosedMesh(const Surface& surface)
 std::vector<Vec3> ClosedMesh::with_centres(std::span<const Vec3> positions) const {
   std::vector<Vec3> all(positions.begin(), positions.end());
   all.resize(points_ + holes_);
-  std::vector<double> ends(holes_, 0);
+  std::vector<double> totals(holes_, 0);
   // The fans follow the mesh's own triangles; their last corner is the centre.
   for (auto fan = triangles_.rbegin(); fan != triangles_.rend() && (*fan)[2] >= points_; ++fan) {
     const Triangle& corners = *fan;
-    all[corners[2]] += positions[corners[0]] + positions[corners[1]];
-    ends[corners[2] - points_] += 2;
+    const Vec3 &a = positions[corners[0]], &b = positions[corners[1]];
+    const double weight = weight_ == EdgeWeight::Length ? (a - b).norm() : 1;
+    all[corners[2]] += weight * (a + b);
+    totals[corners[2] - points_] += 2 * weight;
   }
-  for (std::size_t hole = 0; hole < holes_; ++hole) all[points_ + hole] /= ends[hole];
+  for (std::size_t hole = 0; hole < holes_; ++hole) {
+    if (totals[hole] > 0) all[points_ + hole] /= totals[hole];
+  }
   return all;
 }
 

@@ -10,11 +10,18 @@
 
 namespace triglyph {
 
-// Every connected boundary becomes a fan around one centre, the mean of its edges' midpoints.
+// How much an edge of a boundary counts for the centre of its hole.
+enum class EdgeWeight : std::uint8_t {
+  Length,  // the centre does not depend on how finely the boundary is divided
+  One,     // marks of the first builds with a flux layer
+};
+
+// Every connected boundary becomes a fan around one centre, the weighted mean of its edges'
+// midpoints.
 class ClosedMesh {
  public:
   // Closes the holes of a surface. Does not refer to the surface afterwards. O(triangles).
-  explicit ClosedMesh(const Surface& surface);
+  explicit ClosedMesh(const Surface& surface, EdgeWeight weight = EdgeWeight::Length);
 
   // The triangles of the mesh, then those of the fans; centres are the points from points() on.
   [[nodiscard]] std::span<const Triangle> triangles() const { return triangles_; }
@@ -27,6 +34,7 @@ class ClosedMesh {
   [[nodiscard]] std::vector<Vec3> with_centres(std::span<const Vec3> positions) const;
 
  private:
+  EdgeWeight weight_;
   std::size_t points_;
   std::size_t holes_ = 0;
   std::vector<Triangle> triangles_;

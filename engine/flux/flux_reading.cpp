@@ -64,8 +64,10 @@ struct Guess {
   std::string undone;
 };
 
-// Probabilities that nothing was done that needs undoing, that smoothing was, and so on.
-constexpr double kPlainPrior = 0.5;
+// Probabilities that nothing was done that needs undoing, that the mark is of the first builds and
+// nothing was done, that the mesh was smoothed, and so on.
+constexpr double kPlainPrior = 0.45;
+constexpr double kFirstPrior = 0.05;
 constexpr double kUnsmoothedPrior = 0.2;
 constexpr double kUniformPrior = 0.15;
 constexpr double kCurvaturePrior = 0.15;
@@ -98,7 +100,10 @@ std::string amount(const char* what, double value) {
 // The surface as it is read, and what it may have been before.
 class Subject {
  public:
-  explicit Subject(const Surface& surface) : surface_(surface), closed_(surface) {}
+  explicit Subject(const Surface& surface, EdgeWeight weight = EdgeWeight::Length)
+      : surface_(surface), closed_(surface, weight) {}
+
+  [[nodiscard]] bool has_holes() const { return closed_.holes() > 0; }
 
   // Returns nothing for a surface without a frame.
   [[nodiscard]] std::optional<FluxValues> values(std::span<const Vec3> positions) const {
@@ -263,6 +268,10 @@ void for_guesses(const Surface& surface, const TryAll& try_all) {
   const std::optional<FluxValues> here = subject.values(positions);
   if (!here) return;
   std::vector<Guess> guesses = {{measured(*here), -std::log2(kPlainPrior), ""}};
+  if (subject.has_holes()) {
+    const auto first = Subject(surface, EdgeWeight::One).values(positions);
+    if (first) guesses.push_back({measured(*first), -std::log2(kFirstPrior), ""});
+  }
   if (try_all(guesses)) return;
 
   guesses.clear();

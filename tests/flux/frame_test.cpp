@@ -41,6 +41,37 @@ TEST(ClosedMesh, ClosesEachHoleByAFanAroundItsMiddle) {
   }
 }
 
+// The middle of a hole does not depend on how finely its boundary is divided.
+TEST(ClosedMesh, KeepsTheMiddleOfAHoleWhoseBoundaryIsDivided) {
+  Mesh open = without_faces_above(test::sphere(24, 2), 1);
+  const auto middle = [](const Mesh& mesh, EdgeWeight weight) {
+    const Halfedges halfedges = build_halfedges(mesh);
+    return ClosedMesh({mesh, halfedges}, weight).with_centres(mesh.positions).back();
+  };
+  const Vec3 before = middle(open, EdgeWeight::Length);
+  EXPECT_LT((middle(open, EdgeWeight::One) - before).norm(), 1e-9);
+  // every boundary edge on one side is divided
+  const Halfedges halfedges = build_halfedges(open);
+  const std::size_t faces = open.triangles.size();
+  for (std::uint32_t face = 0; face < faces; ++face) {
+    Halfedge side = halfedges.first_of_face(face);
+    for (std::size_t i = 0; i < 3; ++i, side = halfedges.next(side)) {
+      if (!halfedges.is_boundary(halfedges.opposite(side))) continue;
+      const std::uint32_t from = halfedges.from(side), to = halfedges.to(side);
+      if (open.positions[from][0] < 0 || open.positions[to][0] < 0) continue;
+      const auto added = static_cast<std::uint32_t>(open.positions.size());
+      open.positions.push_back((open.positions[from] + open.positions[to]) / 2);
+      const std::uint32_t third = halfedges.to(halfedges.next(side));
+      open.triangles[face] = {from, added, third};
+      open.triangles.push_back({added, to, third});
+      break;
+    }
+  }
+  ASSERT_GT(open.triangles.size(), faces);
+  EXPECT_LT((middle(open, EdgeWeight::Length) - before).norm(), 1e-9);
+  EXPECT_GT((middle(open, EdgeWeight::One) - before).norm(), 0.1);
+}
+
 TEST(SolidFrame, OfABallHasItsCentreAndRadius) {
   Mesh ball = test::sphere(80, 3);
   for (Vec3& p : ball.positions) p += Vec3(5, 6, 7);

@@ -39,10 +39,13 @@ constexpr GoldenMark kGoldenMarks[] = {
     {"aie-all.obj", "--scheme aie --aie-groups all", "616c6c"},
     {"iie-radius.ply", "--scheme iie --radius 0.28", "72"},
     {"flux-text.off", "", "6f6b"},
+    {"flux-open.off", "", "6f6b"},
     {"owner.stl", "--scheme tsq --key-file owner.key", "6d696e65"},
     // generation 2
     {"iie-local.off", "", "6c"},
     {"iie-local.ply", "", "00ff01"},
+    {"tsq-strong.obj", "", "77696465"},
+    {"tsq-parity.obj", "", "706172697479"},
     {"iie-local-wide.obj", "--scheme iie --step 0.004 --site-rings 6 --part-bits 2", "77"},
 };
 
@@ -54,6 +57,8 @@ struct GoldenRecords {
 constexpr GoldenRecords kGoldenRecords[] = {
     {"records.jsonl", ""},
     {"flux-records.jsonl", ""},
+    {"flux-open-records.jsonl", ""},
+    {"strong-records.jsonl", ""},
     {"records-2.jsonl", ""},
     {"owner-records.jsonl", "--key-file owner.key"},
 };
