@@ -64,12 +64,40 @@ void mark_units(const MarkTask& task, MarkStages& stages, bool seeks_way_out) {
   }
 }
 
+// Returns the options with the cells and words of a normal mark, if they are those of a strong one.
+std::optional<MarkOptions> with_usual_cells(const MarkOptions& options) {
+  const MarkOptions strong = default_mark_options(options.scheme, false, Strength::Strong);
+  const MarkOptions usual = default_mark_options(options.scheme, false);
+  if (options.strength != Strength::Strong || options.encoding() != strong.encoding() ||
+      strong.encoding() == usual.encoding()) {
+    return std::nullopt;
+  }
+  MarkOptions changed = options;
+  changed.format = usual.format;
+  changed.scheme_options = usual.scheme_options;
+  return changed;
+}
+
+// Marks units; those of a strong mark with the cells of a normal one where wide ones would move
+// points too far.
+Marking mark_units_somehow(const MarkTask& task, MarkStages& stages, bool seeks_way_out) {
+  const auto usual = with_usual_cells(task.options);
+  mark_units(task, stages, seeks_way_out && !usual);
+  if (!usual || stages.marking().status != MarkStatus::TooSmall) {
+    return std::move(stages.marking());
+  }
+  const MarkTask again{task.surface, task.payload, task.key, *usual, task.output};
+  MarkStages with_usual(again);
+  mark_units(again, with_usual, seeks_way_out);
+  with_usual.marking().scheme_options = usual->scheme_options;
+  return std::move(with_usual.marking());
+}
+
 // Marks the units of a surface within the budget of visibility, measured against the mesh as it was
 // before any layer: with fewer units a part where the mark would be seen.
 Marking mark_units_unseen(const MarkTask& task, MarkStages& stages, const Mesh& before,
                           bool seeks_way_out) {
-  mark_units(task, stages, seeks_way_out);
-  Marking marking = std::move(stages.marking());
+  Marking marking = mark_units_somehow(task, stages, seeks_way_out);
   const double budget = task.options.max_visibility;
   const bool has_redundancy = marking.parts_needed > 0 && !task.options.format.is_spread;
   while (budget > 0 && marking.status == MarkStatus::Marked) {
@@ -84,8 +112,7 @@ Marking mark_units_unseen(const MarkTask& task, MarkStages& stages, const Mesh& 
     }
     const MarkTask again{task.surface, task.payload, task.key, fewer, task.output};
     MarkStages fewer_units(again);
-    mark_units(again, fewer_units, false);
-    marking = std::move(fewer_units.marking());
+    marking = mark_units_somehow(again, fewer_units, false);
   }
   return marking;
 }

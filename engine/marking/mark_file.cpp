@@ -182,6 +182,9 @@ void FileMarking::run_stage(double& seconds, const Stage& stage) noexcept {
 
 void FileMarking::describe(const Marking& marking) {
   result_.format = marking.format;
+  if (!marking.scheme_options.empty()) {
+    result_.request.options.scheme_options = marking.scheme_options;
+  }
   result_.flux = marking.flux;
   result_.parts = static_cast<std::uint32_t>(marking.words.size());
   result_.candidates = marking.candidates;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/base/options.h"
 #include "engine/flux/flux_mark.h"
 #include "engine/message/words.h"
 #include "engine/scheme/scheme.h"
@@ -52,6 +53,7 @@ struct Marking {
   std::vector<Vec3> positions;      // of all points, as the file will hold them
   std::vector<Word> words;          // one per part, and of a message others with parities
   WordFormat format;                // of the words; fill chooses the subscript bits
+  OptionValues scheme_options;      // of the units, if not those that were asked for
   std::vector<Carrier> carriers;    // ascending by anchor
   std::uint32_t parts_carried = 0;  // with at least one carrier, of those needed or of fill's
   std::uint32_t parts_needed = 0;   // the first words, which a message needs; 0: fill

@@ -61,6 +61,7 @@ TrialMark mark_for_trial(const Mesh& mesh, const MarkRequest& request, const Key
   result.mesh = {std::move(marking.positions), mesh.triangles};
   result.encoding = request.options.encoding();
   result.encoding.format = marking.format;
+  if (!marking.scheme_options.empty()) result.encoding.scheme_options = marking.scheme_options;
   result.message = request.message();
   result.flux = marking.flux;
   result.has_units = !marking.words.empty();

@@ -8,6 +8,7 @@
 
 #include "engine/base/random.h"
 #include "engine/marking/read_file.h"
+#include "engine/samples/sample_shapes.h"
 #include "tests/support/shapes.h"
 #include "tests/support/temp_folder.h"
 
@@ -99,6 +100,25 @@ TEST(MarkFile, ADigitMoreIsUsedWhereTheFileHasTooFew) {
   folder.write("in.obj", obj_of(ball, 7));
   EXPECT_EQ(marked({}, "fine.obj").digits, 0);
   EXPECT_EQ(marked({{"digits", std::int64_t{2}}}, "finer.obj").digits, 2);
+}
+
+// A coarse mesh, on which wide cells would move points too far, gets those of a normal mark.
+TEST(MarkFile, AStrongMarkOfACoarseMeshHasTheUsualCells) {
+  const test::TempFolder folder;
+  folder.write("in.obj", obj_of(make_sample_shape(SampleShape::Closed, 1500, 301), 6));
+  const auto marked = [&](const char* strength) {
+    return mark_file(
+        folder / "in.obj", folder / (std::string(strength) + ".obj"),
+        request_of({{"scheme", std::string("tsq")}, {"strength", std::string(strength)}}),
+        Key::trial());
+  };
+  const MarkedFile normal = marked("normal");
+  const MarkedFile strong = marked("strong");
+  ASSERT_TRUE(normal.is_marked()) << normal.error;
+  ASSERT_TRUE(strong.is_marked()) << strong.error;
+  EXPECT_EQ(strong.encoding(), normal.encoding());
+  EXPECT_GT(strong.units_embedded, normal.units_embedded);
+  EXPECT_EQ(message_read(folder / "strong.obj"), kHidden);
 }
 
 TEST(MarkFile, QuadranglesWithNearlyEqualDiagonalsCarryEveryLayer) {
