@@ -121,22 +121,29 @@ Extraction extract_as_is(const BoundScheme& scheme, const WordCode& code, int do
 
 Extraction extract(const BoundScheme& scheme, const WordCode& code, int doubtful_parts,
                    ReadEffort effort) {
+  const bool is_spread = code.format().is_spread;
   Extraction result;
+  if (is_spread && effort == ReadEffort::Direct) return result;
   std::vector<std::vector<Reading>> as_it_is = {scheme.read()};
-  const auto directly = [&](std::span<const Reading> readings) {
-    return count_directly(readings, code, doubtful_parts);
+  std::vector<std::vector<Reading>> others;
+  bool is_turned = false;
+  const auto try_all = [&](const auto& count) {
+    if (try_each(as_it_is, code, count, result)) return true;
+    if (!std::exchange(is_turned, true)) others = scheme.read_turned_over();
+    return try_each(others, code, count, result);
+  };
+  const auto with_doubts = [&](int doubtful) {
+    return [&code, doubtful](std::span<const Reading> readings) {
+      return count_directly(readings, code, doubtful);
+    };
   };
   const auto corrected = [&](std::span<const Reading> readings) {
     return count_and_correct(readings, code);
   };
-  const bool is_direct = effort != ReadEffort::Correct;
-  if (is_direct && try_each(as_it_is, code, directly, result)) return result;
-  std::vector<std::vector<Reading>> others = scheme.read_turned_over();
-  if (is_direct && try_each(others, code, directly, result)) return result;
-  if (effort != ReadEffort::Direct && !code.format().is_spread) {
-    if (try_each(as_it_is, code, corrected, result) || try_each(others, code, corrected, result)) {
-      return result;
-    }
+  if (effort != ReadEffort::Correct && !is_spread && try_all(with_doubts(0))) return result;
+  if (effort != ReadEffort::Direct) {
+    if ((is_spread || doubtful_parts > 0) && try_all(with_doubts(doubtful_parts))) return result;
+    if (!is_spread && try_all(corrected)) return result;
   }
   result.readings = std::move(as_it_is.front());
   return result;

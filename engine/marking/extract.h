@@ -34,7 +34,8 @@ struct Extraction {
 // What a reader tries. Who looks for marks of many kinds tries what is quick and surest for all of
 // them first.
 enum class ReadEffort : std::uint8_t {
-  Direct,   // what a mark says that is as it was made, or lost units but no part
+  Direct,   // what a mark says that is as it was made, or lost units but no part; nothing of a
+            // spread message, which is always corrected
   Correct,  // only what else it may say: of flux all hypotheses
   All,      // both, the first first
 };

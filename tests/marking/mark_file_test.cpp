@@ -105,7 +105,7 @@ TEST(MarkFile, ADigitMoreIsUsedWhereTheFileHasTooFew) {
 // A coarse mesh, on which wide cells would move points too far, gets those of a normal mark.
 TEST(MarkFile, AStrongMarkOfACoarseMeshHasTheUsualCells) {
   const test::TempFolder folder;
-  folder.write("in.obj", obj_of(make_sample_shape(SampleShape::Closed, 1500, 301), 6));
+  folder.write("in.obj", obj_of(make_sample_shape(SampleShape::Closed, 900, 301), 6));
   const auto marked = [&](const char* strength) {
     return mark_file(
         folder / "in.obj", folder / (std::string(strength) + ".obj"),
