@@ -55,12 +55,9 @@ struct GoldenRecords {
 };
 
 constexpr GoldenRecords kGoldenRecords[] = {
-    {"records.jsonl", ""},
-    {"flux-records.jsonl", ""},
-    {"flux-open-records.jsonl", ""},
-    {"strong-records.jsonl", ""},
-    {"records-2.jsonl", ""},
-    {"owner-records.jsonl", "--key-file owner.key"},
+    {"records.jsonl", ""},           {"flux-records.jsonl", ""},
+    {"flux-open-records.jsonl", ""}, {"strong-records.jsonl", ""},
+    {"records-2.jsonl", ""},         {"owner-records.jsonl", "--key-file owner.key"},
 };
 
 std::vector<std::string> lines_of(const std::string& text) {
