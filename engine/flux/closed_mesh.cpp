@@ -32,7 +32,10 @@ class Components {
 }  // namespace
 
 ClosedMesh::ClosedMesh(const Surface& surface, EdgeWeight weight)
-    : weight_(weight), points_(surface.mesh.positions.size()), triangles_(surface.mesh.triangles) {
+    : weight_(weight),
+      points_(surface.mesh.positions.size()),
+      own_triangles_(surface.mesh.triangles.size()),
+      triangles_(surface.mesh.triangles) {
   const Halfedges& halfedges = surface.halfedges;
   std::vector<Halfedge> boundary;  // on the side of the hole
   for (std::uint32_t edge = 0; edge < halfedges.edge_count(); ++edge) {
@@ -43,6 +46,7 @@ ClosedMesh::ClosedMesh(const Surface& surface, EdgeWeight weight)
   Components components(points_);
   for (const Halfedge side : boundary) components.join(halfedges.from(side), halfedges.to(side));
   std::vector<std::uint32_t> roots;
+  roots.reserve(boundary.size());
   for (const Halfedge side : boundary) roots.push_back(components.of(halfedges.from(side)));
   std::vector<std::uint32_t> holes = roots;
   std::sort(holes.begin(), holes.end());
@@ -71,6 +75,18 @@ std::vector<Vec3> ClosedMesh::with_centres(std::span<const Vec3> positions) cons
     if (totals[hole] > 0) all[points_ + hole] /= totals[hole];
   }
   return all;
+}
+
+std::optional<SolidFrame> ClosedMesh::frame(std::span<const Vec3> positions) const {
+  if (holes_ > 0) {
+    const auto area = [&](std::size_t begin, std::size_t end) {
+      double sum = 0;
+      for (std::size_t t = begin; t < end; ++t) sum += area_normal(positions, triangles_[t]).norm();
+      return sum;
+    };
+    if (area(own_triangles_, triangles_.size()) > area(0, own_triangles_)) return std::nullopt;
+  }
+  return solid_frame(positions, triangles_);
 }
 
 }  // namespace triglyph

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "engine/flux/solid_frame.h"
 #include "engine/mesh/surface.h"
 
 namespace triglyph {
@@ -30,6 +32,11 @@ class ClosedMesh {
   // Returns the number of holes that were closed.
   [[nodiscard]] std::size_t holes() const { return holes_; }
 
+  // Returns the frame of the closed mesh; nothing if it encloses next to no volume, or if the fans
+  // are larger than the mesh itself, which then encloses nothing. `positions` are those of
+  // with_centres(). O(triangles), parallel.
+  [[nodiscard]] std::optional<SolidFrame> frame(std::span<const Vec3> positions) const;
+
   // Returns the positions followed by the centres that they give. O(points).
   [[nodiscard]] std::vector<Vec3> with_centres(std::span<const Vec3> positions) const;
 
@@ -37,6 +44,7 @@ class ClosedMesh {
   EdgeWeight weight_;
   std::size_t points_;
   std::size_t holes_ = 0;
+  std::size_t own_triangles_ = 0;  // those before the fans
   std::vector<Triangle> triangles_;
 };
 

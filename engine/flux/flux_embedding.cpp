@@ -116,7 +116,7 @@ FluxCanvas::FluxCanvas(const Surface& surface) : surface_(surface), closed_(surf
   const Mesh& mesh = surface.mesh;
   diagonal_ = surface_diagonal(mesh);
   const std::vector<Vec3> positions = closed_.with_centres(mesh.positions);
-  const auto frame = solid_frame(positions, closed_.triangles());
+  const auto frame = closed_.frame(positions);
   if (!frame) {
     obstacle_ = FluxObstacle::NoVolume;
     return;
@@ -245,7 +245,7 @@ std::vector<Vec3> FluxCanvas::moved(std::span<const double> unknowns) const {
 
 std::vector<double> FluxCanvas::used_values(std::span<const Vec3> positions) const {
   const std::vector<Vec3> all = closed_.with_centres(positions);
-  const auto frame = solid_frame(all, closed_.triangles());
+  const auto frame = closed_.frame(all);
   if (!frame) return {};
   const FluxValues values = flux_values(all, closed_.triangles(), aligned(*frame, frame_));
   std::vector<double> result;

@@ -111,12 +111,12 @@ class Subject {
       if (!std::isfinite(p.sqrnorm())) return std::nullopt;
     }
     const std::vector<Vec3> all = closed_.with_centres(positions);
-    const auto frame = solid_frame(all, closed_.triangles());
+    const auto frame = closed_.frame(all);
     if (!frame) return std::nullopt;
     return flux_values(all, closed_.triangles(), *frame);
   }
   [[nodiscard]] std::optional<SolidFrame> frame() const {
-    return solid_frame(closed_.with_centres(surface_.mesh.positions), closed_.triangles());
+    return closed_.frame(closed_.with_centres(surface_.mesh.positions));
   }
   [[nodiscard]] const Mesh& mesh() const { return surface_.mesh; }
 

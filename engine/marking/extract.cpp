@@ -85,68 +85,74 @@ void tell(Counted counted, const WordCode& code, Extraction& result) {
   }
 }
 
-// Tries readings of one surface in all ways it may have been turned, the first as it is; the
-// probability of a false alarm grows by each attempt.
-template <typename Count>
-bool try_each(std::vector<std::vector<Reading>>& turned, const WordCode& code, const Count& count,
-              Extraction& result) {
-  for (std::vector<Reading>& readings : turned) {
-    Counted counted = count(readings);
-    result.false_alarm += counted.decoded.false_alarm;
-    if (!counted.decoded.message) continue;
-    result.readings = std::move(readings);
-    tell(std::move(counted), code, result);
+// Tries readings of a surface, one way after the other, until one gives a message; the probability
+// of a false alarm grows by each attempt.
+class Attempts {
+ public:
+  explicit Attempts(const WordCode& code) : code_(code) {}
+
+  // Each returns whether the readings give a message, which the result then tells.
+  bool read_directly(std::vector<Reading>& readings, int doubtful_parts) {
+    return take(count_directly(readings, code_, doubtful_parts), readings);
+  }
+  bool correct(std::vector<Reading>& readings) {
+    return take(count_and_correct(readings, code_), readings);
+  }
+
+  // Ends the attempts. Without a message the result has these readings.
+  [[nodiscard]] Extraction result(std::vector<Reading> otherwise) && {
+    if (!result_.message) result_.readings = std::move(otherwise);
+    return std::move(result_);
+  }
+
+ private:
+  bool take(Counted counted, std::vector<Reading>& readings) {
+    result_.false_alarm += counted.decoded.false_alarm;
+    if (!counted.decoded.message) return false;
+    result_.readings = std::move(readings);
+    tell(std::move(counted), code_, result_);
     return true;
   }
-  return false;
-}
+
+  const WordCode& code_;
+  Extraction result_;
+};
 
 }  // namespace
 
 Extraction extract_as_is(const BoundScheme& scheme, const WordCode& code, int doubtful_parts) {
-  Extraction result;
-  std::vector<std::vector<Reading>> one = {scheme.read()};
-  const auto directly = [&](std::span<const Reading> readings) {
-    return count_directly(readings, code, doubtful_parts);
-  };
-  const auto corrected = [&](std::span<const Reading> readings) {
-    return count_and_correct(readings, code);
-  };
-  const bool is_found =
-      try_each(one, code, directly, result) ||
-      (has_repeated_words(one.front(), code.format()) && try_each(one, code, corrected, result));
-  if (!is_found) result.readings = std::move(one.front());
-  return result;
+  Attempts attempts(code);
+  std::vector<Reading> readings = scheme.read();
+  if (!attempts.read_directly(readings, doubtful_parts) &&
+      has_repeated_words(readings, code.format())) {
+    attempts.correct(readings);
+  }
+  return std::move(attempts).result(std::move(readings));
 }
 
 Extraction extract(const BoundScheme& scheme, const WordCode& code, int doubtful_parts,
                    ReadEffort effort) {
   const bool is_spread = code.format().is_spread;
-  Extraction result;
-  if (is_spread && effort == ReadEffort::Direct) return result;
-  std::vector<std::vector<Reading>> as_it_is = {scheme.read()};
-  std::vector<std::vector<Reading>> others;
-  bool is_turned = false;
-  const auto try_all = [&](const auto& count) {
-    if (try_each(as_it_is, code, count, result)) return true;
-    if (!std::exchange(is_turned, true)) others = scheme.read_turned_over();
-    return try_each(others, code, count, result);
+  if (is_spread && effort == ReadEffort::Direct) return {};
+  Attempts attempts(code);
+  std::vector<Reading> as_it_is = scheme.read();
+  std::optional<std::vector<std::vector<Reading>>> turned;
+  const auto try_all = [&](const auto& attempt) {
+    if (attempt(as_it_is)) return true;
+    if (!turned) turned = scheme.read_turned_over();
+    return std::any_of(turned->begin(), turned->end(), attempt);
   };
-  const auto with_doubts = [&](int doubtful) {
-    return [&code, doubtful](std::span<const Reading> readings) {
-      return count_directly(readings, code, doubtful);
-    };
+  const auto directly = [&](int doubtful) {
+    return try_all([&](auto& readings) { return attempts.read_directly(readings, doubtful); });
   };
-  const auto corrected = [&](std::span<const Reading> readings) {
-    return count_and_correct(readings, code);
+  const auto try_effort = [&] {
+    if (effort != ReadEffort::Correct && !is_spread && directly(0)) return;
+    if (effort == ReadEffort::Direct) return;
+    if ((is_spread || doubtful_parts > 0) && directly(doubtful_parts)) return;
+    if (!is_spread) try_all([&](auto& readings) { return attempts.correct(readings); });
   };
-  if (effort != ReadEffort::Correct && !is_spread && try_all(with_doubts(0))) return result;
-  if (effort != ReadEffort::Direct) {
-    if ((is_spread || doubtful_parts > 0) && try_all(with_doubts(doubtful_parts))) return result;
-    if (!is_spread && try_all(corrected)) return result;
-  }
-  result.readings = std::move(as_it_is.front());
-  return result;
+  try_effort();
+  return std::move(attempts).result(std::move(as_it_is));
 }
 
 bool has_repeated_words(std::span<const Reading> readings, const WordFormat& format) {

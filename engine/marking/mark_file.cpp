@@ -225,8 +225,12 @@ void FileMarking::mark_as(const MarkOptions& options, const Key& key) {
                                   file.number_step(), file.has_polygons() ? Recut(recut) : Recut());
   describe(work_->marking);
   if (const auto status = refused_status(work_->marking.status)) {
-    if (*status == FileStatus::TooSmall && file.has_polygons()) {
-      const Marking uncut = triglyph::mark(surface, result_.request.payload, key, options, rounding,
+    const bool had_units =
+        work_->marking.units_valid > 0 && work_->marking.units_valid >= work_->marking.parts_needed;
+    if (*status == FileStatus::TooSmall && had_units && file.has_polygons()) {
+      MarkOptions units = options;
+      units.flux = LayerUse::No;
+      const Marking uncut = triglyph::mark(surface, result_.request.payload, key, units, rounding,
                                            file.number_step());
       if (uncut.status == MarkStatus::Marked) {
         end(FileStatus::NotVerified, not_read_back(0, uncut.units_assigned, true));

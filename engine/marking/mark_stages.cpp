@@ -183,14 +183,14 @@ const BoundScheme& MarkStages::moves() {
 
 // Words with parities take units that a part may need where units are scarce.
 void MarkStages::embed(const MoveLimits& limits, const Capacity& capacity, Marking& marking) {
-  embed_words(limits, capacity, marking);
+  embed_once(limits, capacity, marking);
   const bool has_others = !is_fill() && !is_spread() && marking.words.size() > marking.parts_needed;
   if (!has_others || marking.parts_carried == marking.parts_needed) return;
   marking.words.resize(marking.parts_needed);
-  embed_words(limits, capacity, marking);
+  embed_once(limits, capacity, marking);
 }
 
-void MarkStages::embed_words(const MoveLimits& limits, const Capacity& capacity, Marking& marking) {
+void MarkStages::embed_once(const MoveLimits& limits, const Capacity& capacity, Marking& marking) {
   const MarkOptions& options = task_.options;
   const BoundScheme& scheme = *binding_->bound;
   const BoundScheme& measured = limits.cap > 0 ? moves() : scheme;

@@ -82,7 +82,7 @@ class MarkStages {
   [[nodiscard]] MoveLimits limits() const;
   [[nodiscard]] const BoundScheme& moves();
   void embed(const MoveLimits& limits, const Capacity& capacity, Marking& marking);
-  void embed_words(const MoveLimits& limits, const Capacity& capacity, Marking& marking);
+  void embed_once(const MoveLimits& limits, const Capacity& capacity, Marking& marking);
   // Says whether a reader of the marked mesh finds the words of a spread message.
   [[nodiscard]] bool reads_back(const Marking& marking) const;
 

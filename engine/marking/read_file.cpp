@@ -6,7 +6,6 @@
 #include "engine/marking/readable.h"
 
 namespace triglyph {
-
 namespace {
 
 // What corrects raises the probability of a false alarm: flux by 2^-32 in all, a spread message by
@@ -38,7 +37,7 @@ FileReading read_file(const std::filesystem::path& path, std::span<const Encodin
         const auto units = static_cast<std::uint32_t>(found.readings.size());
         reading.units_with_marker = std::max(reading.units_with_marker, units);
         if (!found.message && !found.flux) continue;
-        if (found.message && !found.flux) reading.units_with_marker = units;
+        if (!found.flux) reading.units_with_marker = units;  // those of the mark alone
         reading.mark = FoundMark{found.message.value_or(Message{}),
                                  encoding,
                                  key,

@@ -65,6 +65,17 @@ class EmbeddedPlacements {
     }
   }
 
+  // Takes back the units that moved a corner of a triangle. Returns how many these were.
+  int take_back_movers(const Triangle& triangle) {
+    int count = 0;
+    for (const std::uint32_t point : triangle) {
+      if (mover_[point] == kNoPlacement) continue;
+      take_back(mover_[point]);
+      ++count;
+    }
+    return count;
+  }
+
   // Takes back every unit that moved a point farther than this.
   void take_back_far(double max_move) {
     for (std::uint32_t i = 0; i < placements_.size(); ++i) {
@@ -85,9 +96,7 @@ class EmbeddedPlacements {
           flipped_triangles(surface_.mesh.triangles, surface_.mesh.positions, positions_);
       if (flipped.empty()) return;
       for (const std::uint32_t triangle : flipped) {
-        for (const std::uint32_t point : surface_.mesh.triangles[triangle]) {
-          if (mover_[point] != kNoPlacement) take_back(mover_[point]);
-        }
+        take_back_movers(surface_.mesh.triangles[triangle]);
       }
     }
   }
@@ -102,13 +111,8 @@ class EmbeddedPlacements {
       if (now.size() != before.size()) return;  // by a face that repeats a point: cannot be told
       is_done = true;
       for (std::size_t t = 0; t < before.size(); ++t) {
-        if (now[t] == before[t]) continue;
-        for (const Triangle& triangle : {before[t], now[t]}) {
-          for (const std::uint32_t point : triangle) {
-            if (mover_[point] == kNoPlacement) continue;
-            take_back(mover_[point]);
-            is_done = false;
-          }
+        if (now[t] != before[t] && take_back_movers(before[t]) + take_back_movers(now[t]) > 0) {
+          is_done = false;
         }
       }
     }

@@ -48,14 +48,14 @@ void find_length(const MarkTask& task, const Message& message, MarkStages& stage
 void find_max_move(MarkStages& stages, WayOut& way_out) {
   const double needed = stages.least_move_percent();
   if (!(needed > 0 && needed < kMostPercent)) return;
-  for (double percent = rounded_up(needed); percent <= kMostPercent;
-       percent = rounded_up(kRaiseMove * percent)) {
+  double percent = rounded_up(needed);
+  while (stages.marked_within(percent).status != MarkStatus::Marked) {
     stop_point();
-    if (stages.marked_within(percent).status != MarkStatus::Marked) continue;
-    way_out.move_needed_percent = needed;
-    way_out.max_move_percent = percent;
-    return;
+    percent = rounded_up(kRaiseMove * percent);
+    if (percent > kMostPercent) return;
   }
+  way_out.move_needed_percent = needed;
+  way_out.max_move_percent = percent;
 }
 
 double widest_step(const std::string& scheme) {
@@ -97,7 +97,9 @@ WayOut way_out_of_too_coarse(const MarkTask& task) {
       scheme_info(options.scheme).defaults(false, options.strength).options;
   double step = number_in(options.scheme_options, "step", number_in(defaults, "step", most));
   const MarkTask wider{task.surface, task.payload, task.key, options, task.output};
-  for (step = rounded_up(kRaiseStep * step); step <= most; step = rounded_up(kRaiseStep * step)) {
+  for (;;) {
+    step = rounded_up(kRaiseStep * step);
+    if (step > most) break;
     options.scheme_options["step"] = step;
     MarkStages stages(wider);
     stages.select_units();

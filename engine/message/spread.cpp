@@ -74,7 +74,8 @@ std::vector<std::uint8_t> SpreadCode::decode(std::span<const SoftParity> paritie
   std::vector<float> score(kStates, kNever), next(kStates);
   score[0] = 0;
   std::vector<float> gain(kWindows);  // of a window's content, whose newest bit is bit 0
-  std::vector<std::vector<char>> dropped(steps());  // by state: the bit that left the window
+  std::vector<std::vector<std::uint8_t>> dropped(
+      steps());  // by state: the bit that left the window
   for (std::size_t step = 0; step < steps(); ++step) {
     std::fill(gain.begin(), gain.end(), 0.0F);
     for (const Tapped& row : rows_at[step]) gain[row.taps] -= row.value;
@@ -89,7 +90,7 @@ std::vector<std::uint8_t> SpreadCode::decode(std::span<const SoftParity> paritie
       const float reached = score[state] + gain[content];
       if (!(reached > next[to])) continue;
       next[to] = reached;
-      dropped[step][to] = static_cast<char>(content >> (kWindow - 1));
+      dropped[step][to] = static_cast<std::uint8_t>(content >> (kWindow - 1));
     }
     std::swap(score, next);
   }
@@ -97,7 +98,7 @@ std::vector<std::uint8_t> SpreadCode::decode(std::span<const SoftParity> paritie
   std::vector<std::uint8_t> payload((bits_ + 7) / 8, 0);
   std::uint32_t state = 0;
   for (std::size_t step = steps(); step-- > 0;) {
-    const auto left = static_cast<std::uint32_t>(dropped[step][state]);
+    const std::uint32_t left = dropped[step][state];
     if (left != 0 && step >= kWindow - 1) {
       const std::size_t bit = step - (kWindow - 1);
       payload[bit / 8] |= static_cast<std::uint8_t>(1U << (bit % 8));

@@ -142,13 +142,14 @@ std::uint32_t WordCode::whiten(std::uint32_t part, std::uint32_t index) const {
 }
 
 std::vector<Word> WordCode::words_of(std::span<const std::uint8_t> message) const {
-  check_message(format_, message.size());
-  if (format_.is_spread) return spread_words_of(message);
-  const std::uint32_t parts = parts_for(format_, message.size());
+  return words_of(message, parts_for(format_, message.size()));
+}
+
+std::vector<Word> WordCode::part_words(std::span<const std::uint8_t> message) const {
   const std::vector<std::uint8_t> payload = payload_bytes(message, key_.tag(message));
   const auto part_bits = static_cast<std::size_t>(format_.part_bits);
-  std::vector<Word> words(parts);
-  for (std::uint32_t index = 0; index < parts; ++index) {
+  std::vector<Word> words(parts_for(format_, message.size()));
+  for (std::uint32_t index = 0; index < words.size(); ++index) {
     std::uint32_t part = 0;
     for (std::size_t bit = 0; bit < part_bits; ++bit) {
       if (bit_at(payload, index * part_bits + bit)) part |= 1U << bit;
@@ -165,7 +166,9 @@ std::uint32_t WordCode::most_words(std::size_t message_bytes) const {
 
 std::vector<Word> WordCode::words_of(std::span<const std::uint8_t> message,
                                      std::uint32_t count) const {
-  std::vector<Word> words = words_of(message);
+  check_message(format_, message.size());
+  std::vector<Word> words;
+  if (!format_.is_spread) words = part_words(message);
   const std::uint32_t wanted = std::min(count, most_words(message.size()));
   const SpreadCode code(row_seed_, 8 * message.size() + kTagBits);
   const std::vector<std::uint8_t> payload = spread_payload(message, key_.tag(message));
@@ -185,16 +188,6 @@ Word WordCode::parity_word(const SpreadCode& code, std::span<const std::uint8_t>
   return {permutation_[index], whiten(part, index)};
 }
 
-std::vector<Word> WordCode::spread_words_of(std::span<const std::uint8_t> message) const {
-  const SpreadCode code(row_seed_, 8 * message.size() + kTagBits);
-  const std::vector<std::uint8_t> payload = spread_payload(message, key_.tag(message));
-  std::vector<Word> words(capacity());
-  for (std::uint32_t index = 0; index < words.size(); ++index) {
-    words[index] = parity_word(code, payload, index);
-  }
-  return words;
-}
-
 std::optional<Message> WordCode::decoded(std::size_t message_bytes,
                                          std::span<const SoftParity> parities,
                                          std::span<const SoftBit> bits) const {
@@ -207,27 +200,27 @@ std::optional<Message> WordCode::decoded(std::size_t message_bytes,
   return message;
 }
 
-std::optional<Message> WordCode::spread_message_of(std::span<const double> balances) const {
+std::vector<SoftParity> WordCode::unwhitened(std::span<const double> values) const {
   const auto part_bits = static_cast<std::uint32_t>(format_.part_bits);
-  std::vector<SoftParity> parities;
-  for (std::uint32_t row = 0; row < balances.size(); ++row) {
-    if (balances[row] == 0) continue;
+  std::vector<SoftParity> known;
+  for (std::uint32_t row = 0; row < values.size(); ++row) {
+    if (values[row] == 0) continue;
     const bool is_flipped = (keystream_[row / part_bits] >> (row % part_bits) & 1) != 0;
-    parities.push_back({row, is_flipped ? -balances[row] : balances[row]});
+    known.push_back({row, is_flipped ? -values[row] : values[row]});
   }
-  return first_of_lengths([&](std::size_t bytes) { return decoded(bytes, parities, {}); });
+  return known;
+}
+
+std::optional<Message> WordCode::spread_message_of(std::span<const double> balances) const {
+  const std::vector<SoftParity> known = unwhitened(balances);
+  return first_of_lengths([&](std::size_t bytes) { return decoded(bytes, known, {}); });
 }
 
 std::optional<Message> WordCode::corrected_message_of(std::span<const double> evidence) const {
-  const auto part_bits = static_cast<std::uint32_t>(format_.part_bits);
-  std::vector<SoftParity> known;
-  for (std::uint32_t row = 0; row < evidence.size(); ++row) {
-    if (evidence[row] == 0) continue;
-    const bool is_flipped = (keystream_[row / part_bits] >> (row % part_bits) & 1) != 0;
-    known.push_back({row, is_flipped ? -evidence[row] : evidence[row]});
-  }
+  const std::vector<SoftParity> known = unwhitened(evidence);
   return first_of_lengths([&](std::size_t bytes) -> std::optional<Message> {
-    const std::uint32_t own_rows = part_bits * parts_for(format_, bytes);
+    const std::uint32_t own_rows =
+        static_cast<std::uint32_t>(format_.part_bits) * parts_for(format_, bytes);
     std::vector<SoftBit> bits;
     std::vector<SoftParity> parities;
     for (const SoftParity& read : known) {

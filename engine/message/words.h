@@ -71,7 +71,8 @@ class WordCode {
   // Returns the keyed shift, in [0, 1) cells, of the quantiser of a unit's `index`-th invariant.
   [[nodiscard]] double offset(std::size_t index) const { return offsets_.at(index); }
 
-  // Returns the p words of a message. Throws Error Usage as check_message() does.
+  // Returns the p words of a message, or 2^s if it is spread. Throws Error Usage as check_message()
+  // does.
   [[nodiscard]] std::vector<Word> words_of(std::span<const std::uint8_t> message) const;
 
   // Returns the p words of a message and behind them others that carry parities of its bits
@@ -120,7 +121,9 @@ class WordCode {
   [[nodiscard]] std::uint32_t whiten(std::uint32_t part, std::uint32_t index) const;
   [[nodiscard]] Word parity_word(const SpreadCode& code, std::span<const std::uint8_t> payload,
                                  std::uint32_t index) const;
-  [[nodiscard]] std::vector<Word> spread_words_of(std::span<const std::uint8_t> message) const;
+  [[nodiscard]] std::vector<Word> part_words(std::span<const std::uint8_t> message) const;
+  // Returns the values of bits, w for each part, as those before they were whitened; without zeros.
+  [[nodiscard]] std::vector<SoftParity> unwhitened(std::span<const double> values) const;
   // Returns the message of so many bytes whose bits were read best, if its tag is right.
   [[nodiscard]] std::optional<Message> decoded(std::size_t message_bytes,
                                                std::span<const SoftParity> parities,

@@ -72,6 +72,25 @@ TEST(ClosedMesh, KeepsTheMiddleOfAHoleWhoseBoundaryIsDivided) {
   EXPECT_GT((middle(open, EdgeWeight::One) - before).norm(), 0.1);
 }
 
+// Loose triangles that hang together by their corners: what fans would enclose is not theirs.
+TEST(ClosedMesh, EnclosesNothingIfItsFansAreLargerThanItself) {
+  Mesh ball = test::sphere(24, 2);
+  const auto frame_of = [](const Mesh& mesh) {
+    const Halfedges halfedges = build_halfedges(mesh);
+    const ClosedMesh closed({mesh, halfedges});
+    return closed.frame(closed.with_centres(mesh.positions));
+  };
+  EXPECT_TRUE(frame_of(ball));
+  EXPECT_TRUE(frame_of(without_faces_above(ball, 0)));
+  Mesh strip = without_faces_above(ball, 0.1);  // a band about the middle, open above and below
+  std::erase_if(strip.triangles, [&](const Triangle& t) {
+    return strip.positions[t[0]][2] < -0.1 || strip.positions[t[1]][2] < -0.1 ||
+           strip.positions[t[2]][2] < -0.1;
+  });
+  ASSERT_FALSE(strip.triangles.empty());
+  EXPECT_FALSE(frame_of(strip));
+}
+
 TEST(SolidFrame, OfABallHasItsCentreAndRadius) {
   Mesh ball = test::sphere(80, 3);
   for (Vec3& p : ball.positions) p += Vec3(5, 6, 7);

@@ -112,5 +112,27 @@ TEST(SpreadCode, FindsThePayloadThatAgreesBest) {
   }
 }
 
+// The bound of a false alarm in small: of what decoding makes of random votes, the low bits of the
+// tag fit as seldom as chance lets them, for each length that is tried.
+TEST(SpreadCode, GivesTagsThatFitByChanceAlone) {
+  constexpr int kDraws = 4000;
+  constexpr std::uint32_t kLowBits = 15;
+  const Key key = Key::trial();
+  int fits = 0;
+  for (std::uint64_t seed = 0; seed < kDraws; ++seed) {
+    const std::size_t bytes = 1 + seed % 3;
+    const SpreadCode code(11, 8 * bytes + 32);
+    std::vector<SoftParity> parities;
+    for (std::uint32_t row = 0; row < 120; ++row) {
+      parities.push_back({row, 2 * random_unit(seed, 1, row) - 1});
+    }
+    const std::vector<std::uint8_t> payload = code.decode(parities);
+    const std::uint32_t tag = key.tag(std::span(payload).first(bytes));
+    fits += (tag & kLowBits) == (payload[bytes] & kLowBits) ? 1 : 0;
+  }
+  // a sixteenth, give or take four standard deviations
+  EXPECT_NEAR(fits, kDraws / 16.0, 4 * std::sqrt(kDraws / 16.0));
+}
+
 }  // namespace
 }  // namespace triglyph
