@@ -6,6 +6,11 @@
 namespace triglyph {
 namespace {
 
+// The area of the fans, in terms of the mesh's own, from which on they and not the mesh enclose the
+// solid. Of the meshes of two collections that could be marked it was 1.5 at most, of loose
+// triangles that hang together by their corners 16 and 39; these fans would also take minutes.
+constexpr double kMostFans = 4;
+
 // Sets of points that are joined one pair at a time; the least point stands for its set.
 class Components {
  public:
@@ -84,7 +89,8 @@ std::optional<SolidFrame> ClosedMesh::frame(std::span<const Vec3> positions) con
       for (std::size_t t = begin; t < end; ++t) sum += area_normal(positions, triangles_[t]).norm();
       return sum;
     };
-    if (area(own_triangles_, triangles_.size()) > area(0, own_triangles_)) return std::nullopt;
+    const double own = area(0, own_triangles_);
+    if (area(own_triangles_, triangles_.size()) > kMostFans * own) return std::nullopt;
   }
   return solid_frame(positions, triangles_);
 }

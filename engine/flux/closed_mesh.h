@@ -33,7 +33,7 @@ class ClosedMesh {
   [[nodiscard]] std::size_t holes() const { return holes_; }
 
   // Returns the frame of the closed mesh; nothing if it encloses next to no volume, or if the fans
-  // are larger than the mesh itself, which then encloses nothing. `positions` are those of
+  // are so much larger than the mesh itself that it encloses nothing. `positions` are those of
   // with_centres(). O(triangles), parallel.
   [[nodiscard]] std::optional<SolidFrame> frame(std::span<const Vec3> positions) const;
 

@@ -73,8 +73,8 @@ TEST(ClosedMesh, KeepsTheMiddleOfAHoleWhoseBoundaryIsDivided) {
 }
 
 // Loose triangles that hang together by their corners: what fans would enclose is not theirs.
-TEST(ClosedMesh, EnclosesNothingIfItsFansAreLargerThanItself) {
-  Mesh ball = test::sphere(24, 2);
+TEST(ClosedMesh, EnclosesNothingIfItsFansAreFarLargerThanItself) {
+  const Mesh ball = test::sphere(80, 2);
   const auto frame_of = [](const Mesh& mesh) {
     const Halfedges halfedges = build_halfedges(mesh);
     const ClosedMesh closed({mesh, halfedges});
