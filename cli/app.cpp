@@ -76,6 +76,7 @@ std::unique_ptr<CLI::App> make_app(Action& action) {
   app->require_subcommand(1);
   add_mark_verb(*app, action);
   add_extract_verb(*app, action);
+  add_trace_verb(*app, action);
   add_verify_verb(*app, action);
   add_measure_verb(*app, action);
   add_render_verb(*app, action);

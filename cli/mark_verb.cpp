@@ -22,6 +22,7 @@ struct MarkArguments {
   std::vector<std::string> inputs;
   fs::path out;
   OptionValues values;
+  fs::path recipients;
   fs::path records;
   fs::path pictures;  // directory
   bool json = false;
@@ -44,9 +45,14 @@ bool has_manifest(const MarkArguments& arguments) {
 // Opens the same jobs any number of times; the list on standard input is read once.
 class Jobs {
  public:
-  explicit Jobs(const MarkArguments& arguments) : arguments_(arguments) {
+  explicit Jobs(const MarkArguments& arguments) : arguments_(arguments), values_(arguments.values) {
+    if (!arguments.recipients.empty()) {
+      recipients_ = read_recipients(arguments.recipients);
+      // contradicts any other payload
+      values_.merge(for_recipient(*recipients_));
+    }
     if (has_manifest(arguments)) {
-      check_contradictions(arguments.values, "");  // its lines may choose the scheme
+      check_contradictions(values_, "");  // its lines may choose the scheme
       return;
     }
     for (const std::string& input : arguments.inputs) {
@@ -54,7 +60,7 @@ class Jobs {
       throw Error(ErrorCode::Usage, input, "",
                   "a manifest is marked alone, without further meshes or manifests");
     }
-    check_contradictions(arguments.values, scheme_of(arguments.values));
+    check_contradictions(values_, scheme_of(values_));
     if (arguments.out.empty()) {
       throw Error(ErrorCode::Usage, {}, "", "--out is needed to mark meshes without a manifest");
     }
@@ -63,14 +69,20 @@ class Jobs {
 
   [[nodiscard]] std::unique_ptr<JobSource> open() const {
     if (has_manifest(arguments_)) {
-      return std::make_unique<ManifestReader>(arguments_.inputs[0], arguments_.values,
-                                              arguments_.out);
+      return with_copies(
+          std::make_unique<ManifestReader>(arguments_.inputs[0], values_, arguments_.out));
     }
-    return std::make_unique<MeshList>(meshes_, arguments_.values, arguments_.out);
+    return with_copies(std::make_unique<MeshList>(meshes_, values_, arguments_.out));
   }
 
  private:
+  [[nodiscard]] std::unique_ptr<JobSource> with_copies(std::unique_ptr<JobSource> meshes) const {
+    return std::make_unique<CopiesSource>(std::move(meshes), recipients_, arguments_.out);
+  }
+
   const MarkArguments& arguments_;
+  OptionValues values_;
+  std::shared_ptr<const Recipients> recipients_;  // null: none on the command line
   std::vector<NamedFile> meshes_;
 };
 
@@ -91,6 +103,9 @@ std::vector<OwnFile> own_files(const MarkArguments& arguments) {
   std::vector<OwnFile> files;
   if (!arguments.key.file().empty()) files.push_back({arguments.key.file(), "the key", false});
   if (has_manifest(arguments)) files.push_back({arguments.inputs[0], "the manifest", false});
+  if (!arguments.recipients.empty()) {
+    files.push_back({arguments.recipients, "the list of recipients", false});
+  }
   const fs::path ledger = ledger_of(arguments);
   files.push_back({ledger, "the ledger", true});
   for (const char* ending : {"-wal", "-shm", "-journal"}) {
@@ -194,7 +209,7 @@ int print_plan(const MarkArguments& arguments, const Jobs& jobs, const Key& key)
       nlohmann::ordered_json json = {{"plan", verb}};
       put_path(json, "mesh", job.mesh);
       put_path(json, "out", job.out);
-      json["scheme"] = job.request.options.scheme;
+      json["scheme"] = job.request.options.scheme_name();
       if (!decision.reason.empty()) json["reason"] = decision.reason;
       std::cout << to_line(json);
       return;
@@ -266,6 +281,11 @@ void add_mark_verb(CLI::App& app, Action& action) {
       ->type_name("MANIFEST|INPUT");
   verb->add_option("--out", arguments->out, "Directory for the marked files")->type_name("DIR");
   add_declared_options(*verb, mark_option_specs(), arguments->values);
+  verb->add_option(
+          "--recipients", arguments->recipients,
+          "Make a copy of every mesh for each name of this list, a line each, or the first "
+          "field of each line of a .csv file")
+      ->type_name("FILE");
   verb->add_option("--records", arguments->records, "Write one JSON record per mesh to this file")
       ->type_name("FILE");
   verb->add_option("--render", arguments->pictures,

@@ -19,6 +19,7 @@ void add_keygen_verb(CLI::App& app, Action& action);
 void add_ledger_verb(CLI::App& app, Action& action);
 void add_mark_verb(CLI::App& app, Action& action);
 void add_extract_verb(CLI::App& app, Action& action);
+void add_trace_verb(CLI::App& app, Action& action);
 void add_verify_verb(CLI::App& app, Action& action);
 void add_measure_verb(CLI::App& app, Action& action);
 void add_render_verb(CLI::App& app, Action& action);

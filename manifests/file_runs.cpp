@@ -79,6 +79,10 @@ struct ReadItem final : FileItem {
   std::optional<FileReading> reading;
 };
 
+struct TraceItem final : FileItem {
+  TraceResult result;
+};
+
 struct AttackItem final : FileItem {
   AttackResult result;
 };
@@ -109,6 +113,38 @@ void read_files(std::span<const fs::path> files, std::span<const Encoding> encod
       source, [&](ReadItem& item) { item.reading = read_file(item.file, encodings, keys); },
       [&](ReadItem& item) {
         on_result({item.file, std::move(item.reading), std::move(item.failure)});
+      },
+      context, stop);
+}
+
+void trace_files(std::span<const fs::path> files, std::span<const Suspects> suspects,
+                 const TraceOptions& options, std::span<const Encoding> encodings,
+                 const RunContext& context,
+                 const std::function<void(const TraceResult&)>& on_result,
+                 const std::atomic<bool>& stop) {
+  std::vector<Key> keys;
+  for (const Suspects& each : suspects) keys.push_back(each.key());
+  auto file = files.begin();
+  const auto source = [&]() -> std::unique_ptr<TraceItem> {
+    if (file == files.end()) return nullptr;
+    auto item = std::make_unique<TraceItem>();
+    item->file = *file++;
+    item->result.path = item->file;
+    return item;
+  };
+  run_files<TraceItem>(
+      source,
+      [&](TraceItem& item) {
+        FileTrace trace = trace_file(item.file, suspects, options);
+        const bool names_one = !trace.names.empty() && options.believes(trace.names[0]);
+        if (!names_one && !encodings.empty()) {
+          item.result.reading = read_file(item.file, encodings, keys);
+        }
+        item.result.trace = std::move(trace);
+      },
+      [&](TraceItem& item) {
+        item.result.failure = std::move(item.failure);
+        on_result(item.result);
       },
       context, stop);
 }

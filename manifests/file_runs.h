@@ -13,6 +13,7 @@
 
 #include "engine/attack/attack_file.h"
 #include "engine/marking/read_file.h"
+#include "engine/marking/trace_file.h"
 #include "engine/marking/verify_file.h"
 #include "manifests/pairs.h"
 #include "manifests/record.h"
@@ -39,6 +40,23 @@ void read_files(std::span<const std::filesystem::path> files, std::span<const En
                 std::span<const Key> keys, const RunContext& context,
                 const std::function<void(const ReadResult&)>& on_result,
                 const std::atomic<bool>& stop);
+
+// The result of tracing one file: a trace or a failure.
+struct TraceResult {
+  std::filesystem::path path;
+  std::optional<FileTrace> trace;
+  std::optional<FileReading> reading;  // of messages, if that was asked for
+  std::optional<FileFailure> failure;
+};
+
+// Traces every file; see trace_file(). Where it names nobody, the file is also read under the
+// encodings, if there are any; see read_file(). Calls `on_result` in the order of the files, one
+// call at a time.
+void trace_files(std::span<const std::filesystem::path> files, std::span<const Suspects> suspects,
+                 const TraceOptions& options, std::span<const Encoding> encodings,
+                 const RunContext& context,
+                 const std::function<void(const TraceResult&)>& on_result,
+                 const std::atomic<bool>& stop);
 
 // A mesh to attack, and the file to write.
 struct AttackJob {

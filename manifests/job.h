@@ -3,8 +3,11 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 
+#include "engine/marking/mesh_of_copies.h"
 #include "engine/marking/options.h"
+#include "manifests/recipients.h"
 
 namespace triglyph {
 
@@ -13,6 +16,8 @@ struct Job {
   std::filesystem::path mesh;
   std::filesystem::path out;
   MarkRequest request;
+  std::shared_ptr<const Recipients> recipients = {};  // null: the job is not for several
+  std::shared_ptr<const MeshOfCopies> copies = {};    // of jobs that are copies of one mesh
 };
 
 }  // namespace triglyph

@@ -26,7 +26,7 @@ constexpr int kApplicationId = 0x54474c59;
 constexpr int kBusyTimeout = 30000;
 
 // Step i leads from schema i to schema i + 1. Steps are never changed, only added.
-constexpr std::array<const char*, 2> kSteps = {
+constexpr std::array<const char*, 3> kSteps = {
     R"sql(
 CREATE TABLE runs (
   id INTEGER PRIMARY KEY AUTOINCREMENT,
@@ -79,7 +79,8 @@ CREATE TABLE results (
   line TEXT NOT NULL,
   PRIMARY KEY (run, place)
 ) WITHOUT ROWID;
-)sql"};
+)sql",
+    "CREATE INDEX marks_by_message ON marks (message_hex);"};
 constexpr int kSchema = static_cast<int>(kSteps.size());
 
 constexpr const char* kItemColumns =
@@ -381,6 +382,15 @@ std::optional<LedgerMark> Ledger::mark_of(std::string_view output_hash) const {
                       std::string(kMarkColumns) + "WHERE output_hash = ? ORDER BY number LIMIT 1");
   if (!row.text(output_hash).step()) return std::nullopt;
   return mark_in(row);
+}
+
+void Ledger::for_each_mark_of(std::string_view message_hex,
+                              const std::function<void(const LedgerMark&)>& visit) const {
+  const std::lock_guard lock(database_->mutex);
+  LedgerStatement row(*database_,
+                      std::string(kMarkColumns) + "WHERE message_hex = ? ORDER BY number");
+  row.text(message_hex);
+  while (row.step()) visit(mark_in(row));
 }
 
 std::optional<LedgerItem> Ledger::find_after(std::string_view target) const {

@@ -103,6 +103,8 @@ class Ledger {
   // Call the function for every mark or run, ascending by number; or every result, by run and
   // place.
   void for_each_mark(const std::function<void(const LedgerMark&)>& visit) const;
+  void for_each_mark_of(std::string_view message_hex,
+                        const std::function<void(const LedgerMark&)>& visit) const;
   void for_each_run(const std::function<void(const LedgerRun&)>& visit) const;
   void for_each_result(const std::function<void(const LedgerResult&)>& visit) const;
 

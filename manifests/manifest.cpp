@@ -134,6 +134,7 @@ struct ManifestReader::Line {
   bool is_heading = false;
   std::optional<std::string> mesh;
   std::optional<std::string> out;
+  std::shared_ptr<const Recipients> recipients;
   OptionValues values;
 };
 
@@ -220,6 +221,11 @@ ManifestReader::Line ManifestReader::parse(const std::string& text) const {
       (key == "out" ? line.out : line.mesh) = value.get<std::string>();
       continue;
     }
+    if (key == "recipients") {
+      if (!value.is_string()) fail("\"recipients\" is the path of a list");
+      line.recipients = read_recipients(manifest_.parent_path() / value.get<std::string>());
+      continue;
+    }
     const OptionSpec* spec = find_mark_option(key);
     if (spec == nullptr) fail("unknown key \"" + key + "\"");
     line.values.emplace(key, spec->checked(option_value(key, value)));
@@ -229,8 +235,10 @@ ManifestReader::Line ManifestReader::parse(const std::string& text) const {
 
 void ManifestReader::add_jobs(const Line& line) {
   if (!line.mesh) fail("\"mesh\" is missing");
-  const OptionValues values = layered(defaults_, line.values);
+  OptionValues values = layered(defaults_, line.values);
   check_contradictions(line.values, scheme_of(values));
+  const auto recipients = line.recipients ? line.recipients : default_recipients_;
+  if (recipients) values = layered(values, for_recipient(*recipients));
   const MarkRequest request = resolve(values);
   const std::string out = line.out.value_or(default_out_);
   const fs::path base = manifest_.parent_path();
@@ -252,7 +260,8 @@ void ManifestReader::add_jobs(const Line& line) {
     const fs::path target =
         names_file ? base / out
                    : place_below(out.empty() ? out_directory_ : base / out, mesh, root);
-    ready_.push_back({0, mesh, target, request});
+    if (recipients && names_file) fail("\"out\" of several copies must end in \"/\"");
+    ready_.push_back({0, mesh, target, request, recipients});
   }
 }
 
@@ -265,9 +274,47 @@ void ManifestReader::read_line(const std::string& text) try {
   check_contradictions(line.values, "");
   defaults_ = layered(defaults_, line.values);
   default_out_ = line.out.value_or(default_out_);
+  if (line.recipients) default_recipients_ = line.recipients;
 } catch (const Error& error) {
   if (error.path().empty()) fail(error.message());
   throw;
+}
+
+OptionValues for_recipient(const Recipients& recipients) {
+  return {{"recipient", recipients.front().name}};
+}
+
+CopiesSource::CopiesSource(std::unique_ptr<JobSource> meshes,
+                           std::shared_ptr<const Recipients> recipients,
+                           const fs::path& out_directory)
+    : meshes_(std::move(meshes)),
+      recipients_(std::move(recipients)),
+      out_directory_(out_directory) {}
+
+std::optional<Job> CopiesSource::next() {
+  if (!mesh_) {
+    mesh_ = meshes_->next();
+    if (!mesh_) return std::nullopt;
+    recipient_ = 0;
+    const bool is_copy = mesh_->request.options.carry == Carry::Fingerprint;
+    if (!mesh_->recipients && is_copy) mesh_->recipients = recipients_;
+    if (mesh_->recipients) mesh_->copies = std::make_shared<MeshOfCopies>();
+  }
+  Job job = *mesh_;
+  job.index = jobs_++;
+  if (!job.recipients) {
+    mesh_.reset();
+    return job;
+  }
+  const Recipient& recipient = (*job.recipients)[recipient_];
+  job.request.payload = Message(recipient.name.begin(), recipient.name.end());
+  job.out = place_below(job.out.parent_path() / recipient.folder, job.out, job.out.parent_path());
+  const fs::path below = mesh_->out.lexically_relative(out_directory_);
+  if (!out_directory_.empty() && !below.empty() && *below.begin() != "..") {
+    job.out = out_directory_ / recipient.folder / below;
+  }
+  if (++recipient_ == job.recipients->size()) mesh_.reset();
+  return job;
 }
 
 MeshList::MeshList(std::vector<NamedFile> meshes, const OptionValues& values,

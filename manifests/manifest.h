@@ -27,9 +27,10 @@ class JobSource {
   [[nodiscard]] virtual std::optional<Job> next() = 0;
 };
 
-// The keys of a line are "mesh", "out" and the options of marking (mark_option_specs()); "defaults"
-// takes all of these but "mesh". A mesh that one line names is not among the matches of another
-// line's glob, so that a line may override a glob. "out" names a file, or a directory if it ends in
+// The keys of a line are "mesh", "out", "recipients", a list as read_recipients() takes it, and the
+// options of marking (mark_option_specs()); "defaults" takes all of these but "mesh". A mesh that
+// one line names is not among the matches of another line's glob, so that a line may override a
+// glob. "out" names a file, or a directory if it ends in
 // "/". Without it the output goes to `out_directory`, at the path of the mesh relative to the
 // manifest, or to the fixed part of the glob.
 class ManifestReader final : public JobSource {
@@ -57,12 +58,16 @@ class ManifestReader final : public JobSource {
   std::filesystem::path out_directory_;
   OptionValues defaults_;
   std::string default_out_;
+  std::shared_ptr<const Recipients> default_recipients_;
   std::ifstream stream_;
   std::size_t line_ = 0;
   std::size_t jobs_ = 0;
   std::deque<Job> ready_;
   std::unordered_set<std::size_t> named_;  // hashes of the meshes that lines name for themselves
 };
+
+// Returns the values that ask for copies for these recipients: of all, those of the first.
+[[nodiscard]] OptionValues for_recipient(const Recipients& recipients);
 
 // Jobs for meshes that are named on the command line; the output lies below `out_directory` as the
 // mesh does below its root.
@@ -78,6 +83,26 @@ class MeshList final : public JobSource {
   MarkRequest request_;
   std::filesystem::path out_directory_;
   std::size_t next_ = 0;
+};
+
+// Makes the jobs of another source one for each recipient, who gets a copy of the mesh in a folder
+// of its own below the folder of the outputs; jobs without recipients stay as they are. Copies of a
+// mesh follow each other and share it.
+class CopiesSource final : public JobSource {
+ public:
+  // `out_directory` is that of the source. Recipients apply to jobs that have none of their own;
+  // null: there are none.
+  CopiesSource(std::unique_ptr<JobSource> meshes, std::shared_ptr<const Recipients> recipients,
+               const std::filesystem::path& out_directory);
+  [[nodiscard]] std::optional<Job> next() override;
+
+ private:
+  std::unique_ptr<JobSource> meshes_;
+  std::shared_ptr<const Recipients> recipients_;
+  std::filesystem::path out_directory_;
+  std::optional<Job> mesh_;    // of which copies are left
+  std::size_t recipient_ = 0;  // the next
+  std::size_t jobs_ = 0;
 };
 
 // Returns the files that match a pattern with *, ?, [..] or **, sorted. A pattern without wildcards

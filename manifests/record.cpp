@@ -1,6 +1,7 @@
 #include "manifests/record.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include "engine/base/error.h"
@@ -63,30 +64,39 @@ std::vector<Carrier> units_in(const Json& json, std::uint32_t parts) {
   return carriers;
 }
 
+// by FluxContent
+constexpr std::array<const char*, 3> kFluxContentNames = {"message", "number", "fingerprint"};
+
 Json flux_of(const FluxMark& mark) {
-  return {{"content", mark.payload.content == FluxContent::Number ? "number" : "message"},
+  const bool has_payload = mark.payload.content != FluxContent::Fingerprint;
+  return {{"content", kFluxContentNames.at(static_cast<std::size_t>(mark.payload.content))},
           {"bits", mark.payload.bits},
-          {"value", to_hex(bytes_of(mark.payload))},
+          {"value", has_payload ? to_hex(bytes_of(mark.payload)) : ""},
           {"step", mark.step},
           {"rms_percent", mark.rms_percent},
           {"expected_evidence", mark.expected_evidence},
           {"functionals", mark.functionals}};
 }
 
-FluxMark flux_in(const Json& json) {
-  FluxMark mark;
-  const auto content = json.at("content").get<std::string>();
-  if (content != "number" && content != "message") refuse("unknown content " + content);
-  mark.payload.content = content == "number" ? FluxContent::Number : FluxContent::Bytes;
-  mark.payload.bits = whole_number<std::uint8_t>(json.at("bits"));
+void read_payload(const Json& json, FluxPayload& payload) {
   const std::vector<std::uint8_t> bytes = from_hex(json.at("value").get<std::string>());
-  const auto known = std::find(kPayloadBits.begin(), kPayloadBits.end(), mark.payload.bits);
+  const auto known = std::find(kPayloadBits.begin(), kPayloadBits.end(), payload.bits);
   if (known == kPayloadBits.end() || 8 * bytes.size() != static_cast<std::size_t>(*known)) {
     refuse("a flux layer that cannot be");
   }
   for (std::size_t i = 0; i < bytes.size(); ++i) {
-    mark.payload.value |= std::uint64_t{bytes[i]} << (8 * i);
+    payload.value |= std::uint64_t{bytes[i]} << (8 * i);
   }
+}
+
+FluxMark flux_in(const Json& json) {
+  FluxMark mark;
+  const auto content = json.at("content").get<std::string>();
+  const auto name = std::find(kFluxContentNames.begin(), kFluxContentNames.end(), content);
+  if (name == kFluxContentNames.end()) refuse("unknown content " + content);
+  mark.payload.content = static_cast<FluxContent>(name - kFluxContentNames.begin());
+  mark.payload.bits = whole_number<std::uint8_t>(json.at("bits"));
+  if (mark.payload.content != FluxContent::Fingerprint) read_payload(json, mark.payload);
   mark.step = json.value("step", 0.0);
   mark.rms_percent = json.value("rms_percent", 0.0);
   mark.expected_evidence = json.value("expected_evidence", 0.0);
@@ -174,6 +184,9 @@ Json to_json(const Record& record) {
   if (!request.is_fill()) {
     json["message_hex"] = to_hex(request.message());
     json["message_bits"] = 8 * request.message().size();
+    if (request.options.carry == Carry::Fingerprint) {
+      put_path(json, "recipient", std::string(request.message().begin(), request.message().end()));
+    }
   } else {
     json["message_bits"] = std::uint64_t{file.parts} * file.format.part_bits;
   }
@@ -187,6 +200,7 @@ Json to_json(const Record& record) {
                      {"displacement_rms", file.displacement_rms}});
   }
   if (file.flux) json["flux"] = flux_of(*file.flux);
+  if (file.status == FileStatus::Traceable) json["evidence_bits"] = file.evidence;
   if (file.digits > 0) json["digits"] = file.digits;
   json.update(Json{{"input_hash", file.input_hash},
                    {"output_hash", file.output_hash},
@@ -240,6 +254,7 @@ Record parse_record(const std::string& line) try {
   file.input_hash = json.value("input_hash", std::string());
   file.output_hash = json.at("output_hash").get<std::string>();
   file.key_fingerprint = json.at("key").get<std::string>();
+  number("evidence_bits", file.evidence);
   if (json.contains("flux")) file.flux = flux_in(json.at("flux"));
   file.digits = json.value("digits", 0);
   if (json.contains("units")) file.units = units_in(json.at("units"), file.parts);

@@ -78,6 +78,9 @@ void enter_record(Ledger& ledger, std::int64_t run, const Record& record) {
   if (file.is_marked()) {
     mark.emplace();
     if (!file.request.is_fill()) mark->message_hex = to_hex(file.request.message());
+    if (file.request.options.carry == Carry::Fingerprint) {
+      mark->recipient.assign(file.request.message().begin(), file.request.message().end());
+    }
     mark->mesh = item.source;
     mark->out = item.target;
     mark->scheme = file.request.options.scheme_name();
@@ -103,7 +106,8 @@ Decision Resume::decide(const Job& job) const {
                                                     " exists, and the ledger does not know it; "
                                                     "without --no-clobber it is replaced");
   }
-  const bool has_output = known->status == name_of(FileStatus::Marked);
+  const bool has_output = known->status == name_of(FileStatus::Marked) ||
+                          known->status == name_of(FileStatus::Traceable);
   if (known->source != canonical_name(job.mesh)) {
     if (!has_output || !fs::exists(job.out, ignored)) return Decision::mark("another mesh");
     return Decision::refuse(FileStatus::Exists, job.out.string() + " was made from " +

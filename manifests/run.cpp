@@ -45,7 +45,7 @@ class MarkWork {
     item.is_left_out = share_.leaves_out(item.index);
     if (item.is_left_out) return;
     const BoardEntry entry(context_.order, item.index);
-    FileMarking marking(item.job.mesh, item.job.out, item.job.request);
+    FileMarking marking(item.job.mesh, item.job.out, item.job.request, item.job.copies);
     try {
       if (stop_ || !decide(item, marking)) mark(item, marking);
       return;

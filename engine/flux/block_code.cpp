@@ -141,6 +141,12 @@ std::uint64_t low_bits(int bits) {
 
 }  // namespace
 
+FluxPhases phases_of(const FluxBits& bits) {
+  FluxPhases phases{};
+  for (std::size_t i = 0; i < kFunctionals; ++i) phases[i] = 0.5 * bits[i];
+  return phases;
+}
+
 BlockCode::BlockCode(const Key& key, FluxContent content, int bits)
     : content_(content), bits_(bits) {
   const auto size = static_cast<std::size_t>(bits);

@@ -13,10 +13,12 @@ namespace triglyph {
 
 // What the bits of a payload are.
 enum class FluxContent : std::uint8_t {
-  Bytes,   // the message itself, its first byte in the lowest bits
-  Number,  // Key::number() of a message that does not fit, as many bits of it as do
+  Bytes,        // the message itself, its first byte in the lowest bits
+  Number,       // Key::number() of a message that does not fit, as many bits of it as do
+  Fingerprint,  // the bits of a fingerprint, without a payload: see FingerprintCode
 };
 
+// The contents of payloads.
 inline constexpr std::array<FluxContent, 2> kFluxContents = {FluxContent::Bytes,
                                                              FluxContent::Number};
 
@@ -33,6 +35,9 @@ struct FluxPayload {
 };
 
 using FluxBits = std::array<std::uint8_t, kFunctionals>;
+
+// Returns the phases that carry bits.
+[[nodiscard]] FluxPhases phases_of(const FluxBits& bits);
 
 // A random linear code over all functionals, plus a keyed word: marks that use fewer functionals
 // have it punctured. Different sizes, contents and keys have independent keyed words, so a payload

@@ -137,18 +137,18 @@ FluxCanvas::FluxCanvas(const Surface& surface) : surface_(surface), closed_(surf
     return;
   }
   directions_ = outward_directions(mesh);
-  weights_.assign(mesh.positions.size(), 1);
   plate_.emplace(mesh, kSmoothLength * frame_.scale);
   Mesh closed{positions, {closed_.triangles().begin(), closed_.triangles().end()}};
   const PointFaces faces = point_faces(closed);
   derivatives_ = flux_derivatives(positions, closed_.triangles(), faces, directions_, frame_);
   frame_rows_ = frame_rows(positions, closed_.triangles(), faces, directions_, frame_);
-  make_basis();
+  basis_ = make_basis(std::vector<double>(mesh.positions.size(), 1));
   usual_noise_ = noise_of(kUsualNoise, kUsualBits);
   little_noise_ = noise_of(kLittleNoise, kLittleBits);
 }
 
-void FluxCanvas::make_basis() {
+std::shared_ptr<const FluxCanvas::Basis> FluxCanvas::make_basis(
+    std::span<const double> weights) const {
   const std::size_t count = used_.size();
   std::array<std::int32_t, kFunctionals> place{};
   place.fill(-1);
@@ -160,7 +160,7 @@ void FluxCanvas::make_basis() {
   const Columns rows = plate_->restricted(
       count + kFrameRows,
       [&](std::size_t point, const std::function<void(std::size_t, double)>& add) {
-        const double weight = weights_[point];
+        const double weight = weights[point];
         for (const FluxDerivatives::Entry& entry : derivatives_.at(point)) {
           const std::int32_t at = place[entry.functional];
           if (at < 0) continue;
@@ -186,33 +186,33 @@ void FluxCanvas::make_basis() {
   const Eigen::MatrixXd inverse = scale.asDiagonal() * solver.eigenvectors() *
                                   values.cwiseInverse().asDiagonal() *
                                   solver.eigenvectors().transpose() * scale.asDiagonal();
-  basis_ = std::make_unique<Basis>();
-  basis_->responses = fields * inverse.leftCols(wanted);
-  basis_->energy = inverse.topLeftCorner(wanted, wanted);
+  auto basis = std::make_shared<Basis>();
+  basis->responses = fields * inverse.leftCols(wanted);
+  basis->energy = inverse.topLeftCorner(wanted, wanted);
   std::vector<double> areas(plate_->areas().begin(), plate_->areas().end());
   double total = 0;
   for (std::size_t point = 0; point < areas.size(); ++point) {
     total += areas[point];
-    areas[point] *= weights_[point] * weights_[point];
+    areas[point] *= weights[point] * weights[point];
   }
   const std::vector<double> mass = plate_->restricted_weight(areas);
   const Eigen::Map<const Eigen::VectorXd> squares(mass.data(), unknowns);
-  basis_->squares =
-      basis_->responses.transpose() * squares.asDiagonal() * basis_->responses / total;
+  basis->squares = basis->responses.transpose() * squares.asDiagonal() * basis->responses / total;
+  return basis;
 }
 
-// Returns the changes of the functionals to values that carry the bits: first the nearest, then
+// Returns the changes of the functionals to values that have the phases: first the nearest, then
 // whatever single change by a cell makes the weighted sum of squares and energy less.
-std::vector<double> FluxCanvas::changes(const FluxBits& bits, const Dither& dither,
-                                        double step) const {
+std::vector<double> FluxCanvas::changes(const Basis& basis, const FluxPhases& phases,
+                                        const Dither& dither, double step) const {
   const auto count = static_cast<Eigen::Index>(used_.size());
-  const Eigen::MatrixXd cost = kEnergyShare / basis_->energy.trace() * basis_->energy +
-                               (1 - kEnergyShare) / basis_->squares.trace() * basis_->squares;
+  const Eigen::MatrixXd cost = kEnergyShare / basis.energy.trace() * basis.energy +
+                               (1 - kEnergyShare) / basis.squares.trace() * basis.squares;
   Eigen::VectorXd change(count);
   for (Eigen::Index i = 0; i < count; ++i) {
     const std::uint32_t functional = used_[static_cast<std::size_t>(i)];
     const Measured& m = before_[functional];
-    const double goal = dither.of(functional, m.rung) + 0.5 * bits[functional];
+    const double goal = dither.of(functional, m.rung) + phases[functional];
     const double place = m.value / step - goal;
     change[i] = step * (std::round(place) - place);
   }
@@ -234,11 +234,12 @@ std::vector<double> FluxCanvas::changes(const FluxBits& bits, const Dither& dith
   return {change.data(), change.data() + count};
 }
 
-std::vector<Vec3> FluxCanvas::moved(std::span<const double> unknowns) const {
+std::vector<Vec3> FluxCanvas::moved(std::span<const double> unknowns,
+                                    std::span<const double> weights) const {
   const std::vector<double> field = plate_->field(unknowns);
   std::vector<Vec3> positions = surface_.mesh.positions;
   for (std::size_t point = 0; point < positions.size(); ++point) {
-    positions[point] += weights_[point] * field[point] * directions_[point];
+    positions[point] += weights[point] * field[point] * directions_[point];
   }
   return positions;
 }
@@ -255,7 +256,8 @@ std::vector<double> FluxCanvas::used_values(std::span<const Vec3> positions) con
   return result;
 }
 
-bool FluxCanvas::follow_less(std::span<const Vec3> positions, bool only_flipped) {
+bool FluxCanvas::follow_less(std::span<const Vec3> positions, bool only_flipped,
+                             std::vector<double>& weights) const {
   const std::vector<Vec3>& before = surface_.mesh.positions;
   const double least_cosine = only_flipped ? 0 : std::cos(kMostTurn / 180 * M_PI);
   std::vector<char> corner(before.size(), 0);
@@ -275,17 +277,19 @@ bool FluxCanvas::follow_less(std::span<const Vec3> positions, bool only_flipped)
     for (const std::uint32_t point : t) ring[point] = 1;
   }
   for (std::size_t point = 0; point < before.size(); ++point) {
-    if (ring[point] != 0) weights_[point] *= kRingFollows;
-    if (corner[point] != 0) weights_[point] *= only_flipped ? 0 : kCornerFollows;
+    if (ring[point] != 0) weights[point] *= kRingFollows;
+    if (corner[point] != 0) weights[point] *= only_flipped ? 0 : kCornerFollows;
   }
   return true;
 }
 
-std::optional<FluxCanvas::Written> FluxCanvas::write(const FluxBits& bits, const Dither& dither,
-                                                     const FluxLimits& limits) {
+std::optional<FluxCanvas::Written> FluxCanvas::write(const FluxPhases& phases, const Dither& dither,
+                                                     const FluxLimits& limits) const {
   if (obstacle_ != FluxObstacle::None) return std::nullopt;
   const double most = limits.rms_percent / 100 * diagonal_;
   const auto count = static_cast<Eigen::Index>(used_.size());
+  std::vector<double> weights(surface_.mesh.positions.size(), 1);
+  std::shared_ptr<const Basis> basis = basis_;
   std::optional<Written> written;
   for (int round = 0;; ++round) {
     // the largest step that stays within the limit
@@ -293,17 +297,18 @@ std::optional<FluxCanvas::Written> FluxCanvas::write(const FluxBits& bits, const
     std::size_t step = kSteps;
     while (step > 0) {
       --step;
-      goal = changes(bits, dither, step_size(step));
-      if (basis_->rms(Eigen::Map<const Eigen::VectorXd>(goal.data(), count)) <= most) break;
+      goal = changes(*basis, phases, dither, step_size(step));
+      if (basis->rms(Eigen::Map<const Eigen::VectorXd>(goal.data(), count)) <= most) break;
       if (step == 0) return std::nullopt;
     }
-    Eigen::VectorXd unknowns = Eigen::VectorXd::Zero(basis_->responses.rows());
+    Eigen::VectorXd unknowns = Eigen::VectorXd::Zero(basis->responses.rows());
     Eigen::VectorXd rest = Eigen::Map<const Eigen::VectorXd>(goal.data(), count);
     double last = std::numeric_limits<double>::infinity();
     for (int correction = 0; correction < kMostCorrections; ++correction) {
       stop_point();
-      const Eigen::VectorXd trial = unknowns + basis_->responses * rest;
-      std::vector<Vec3> positions = moved({trial.data(), static_cast<std::size_t>(trial.size())});
+      const Eigen::VectorXd trial = unknowns + basis->responses * rest;
+      std::vector<Vec3> positions =
+          moved({trial.data(), static_cast<std::size_t>(trial.size())}, weights);
       const std::vector<double> values = used_values(positions);
       if (values.empty()) return std::nullopt;
       Eigen::VectorXd trial_rest(count);
@@ -323,8 +328,8 @@ std::optional<FluxCanvas::Written> FluxCanvas::write(const FluxBits& bits, const
     }
     const bool only_flipped = round >= kMostRounds;
     if (round == kMostRoundsWithFlips || !written) break;
-    if (!follow_less(written->positions, only_flipped)) break;
-    make_basis();
+    if (!follow_less(written->positions, only_flipped, weights)) break;
+    basis = make_basis(weights);
   }
   if (written && written->residual > kMostResidual) return std::nullopt;
   return written;
@@ -387,7 +392,7 @@ std::optional<std::size_t> FluxCanvas::expected_step(const FluxLimits& limits) c
   const Dither dither(Key::trial());
   const double most = limits.rms_percent / 100 * diagonal_;
   for (std::size_t step = kSteps; step-- > 0;) {
-    const std::vector<double> goal = changes({}, dither, step_size(step));
+    const std::vector<double> goal = changes(*basis_, {}, dither, step_size(step));
     const Eigen::Map<const Eigen::VectorXd> change(goal.data(),
                                                    static_cast<Eigen::Index>(goal.size()));
     if (basis_->rms(change) <= most) return step;

@@ -58,10 +58,10 @@ class FluxCanvas {
     double rms_percent = 0;  // of the surface's diagonal
     double residual = 0;     // root mean square distance of the functionals from their goals, steps
   };
-  // Returns the positions of all points with the bits embedded at the largest step within the
-  // limits; nothing if there is none.
-  [[nodiscard]] std::optional<Written> write(const FluxBits& bits, const Dither& dither,
-                                             const FluxLimits& limits);
+  // Returns the positions of all points with the phases embedded at the largest step within the
+  // limits; nothing if there is none. May be called from several threads at a time.
+  [[nodiscard]] std::optional<Written> write(const FluxPhases& phases, const Dither& dither,
+                                             const FluxLimits& limits) const;
 
   // Returns what a mark of this step is expected to prove.
   [[nodiscard]] FluxExpectation expected_evidence(std::size_t step) const;
@@ -71,15 +71,18 @@ class FluxCanvas {
  private:
   struct Basis;
 
-  void make_basis();
+  // Returns the displacements for points that follow them so far, 0 to 1.
+  [[nodiscard]] std::shared_ptr<const Basis> make_basis(std::span<const double> weights) const;
   // Returns the changes under noise of some amplitude and under quantisation to so many bits.
   [[nodiscard]] std::vector<std::vector<double>> noise_of(double amplitude, int bits) const;
   // Makes the neighbourhoods of faces that turned too far follow less, or keeps corners of faces
   // that are turned over in place; false if there are none.
-  [[nodiscard]] bool follow_less(std::span<const Vec3> positions, bool only_flipped);
-  [[nodiscard]] std::vector<double> changes(const FluxBits& bits, const Dither& dither,
-                                            double step) const;
-  [[nodiscard]] std::vector<Vec3> moved(std::span<const double> unknowns) const;
+  [[nodiscard]] bool follow_less(std::span<const Vec3> positions, bool only_flipped,
+                                 std::vector<double>& weights) const;
+  [[nodiscard]] std::vector<double> changes(const Basis& basis, const FluxPhases& phases,
+                                            const Dither& dither, double step) const;
+  [[nodiscard]] std::vector<Vec3> moved(std::span<const double> unknowns,
+                                        std::span<const double> weights) const;
   // Returns the used functionals of the surface with other positions; nothing without a frame.
   [[nodiscard]] std::vector<double> used_values(std::span<const Vec3> positions) const;
   [[nodiscard]] double squared_move(std::span<const Vec3> positions) const;
@@ -92,11 +95,10 @@ class FluxCanvas {
   Measurement before_{};
   std::vector<std::uint32_t> used_;  // functionals, ascending
   std::vector<Vec3> directions_;     // unit normals of the points
-  std::vector<double> weights_;      // how far each point follows the displacement, 0 to 1
   std::optional<ThinPlate> plate_;
   FluxDerivatives derivatives_;
   std::vector<std::array<double, kFrameRows>> frame_rows_;
-  std::unique_ptr<Basis> basis_;
+  std::shared_ptr<const Basis> basis_;
   // changes of the used functionals under noise and quantisation, usual and little
   std::vector<std::vector<double>> usual_noise_;
   std::vector<std::vector<double>> little_noise_;

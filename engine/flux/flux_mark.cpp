@@ -18,6 +18,9 @@ constexpr double kNeeded = kBelieved + 28;
 // done to them.
 constexpr double kNeededAtLeast = kBelieved + 14;
 
+// Likewise of a word that its reader knows, with nothing paid for a payload.
+constexpr double kNeededOfWord = 54;
+
 // Functionals a bit of the payload: a code of a higher rate confuses payloads.
 constexpr double kLeastRedundancy = 1.6;
 
@@ -56,6 +59,63 @@ int payload_bits(const FluxCanvas& canvas, const FluxLimits& limits, std::size_t
   return is_size && own <= most ? own : most;
 }
 
+struct WordToWrite {
+  FluxPayload payload;
+  FluxPhases phases;
+};
+
+// Writes the word that word_within(limits) returns with moves that keep within the bounds; nothing
+// means that it would not be found.
+template <typename WordWithin>
+FluxMarking write_within(const Surface& surface, const FluxCanvas& canvas,
+                         const WordWithin& word_within, const Key& key, const FluxBounds& bounds,
+                         const std::function<Vec3(const Vec3&)>& rounding) {
+  FluxMarking result;
+  result.obstacle = canvas.obstacle();
+  if (result.obstacle != FluxObstacle::None) return result;
+  const std::vector<Vec3>& before = surface.mesh.positions;
+  const double diagonal = surface_diagonal(surface.mesh);
+  const Dither dither(key);
+  FluxLimits limits{bounds.rms_percent};
+  for (int trial = 0; trial < kMostTrials; ++trial) {
+    const std::optional<WordToWrite> word = word_within(limits);
+    if (!word) {
+      result.obstacle = trial == 0 ? FluxObstacle::TooFaint : FluxObstacle::TooVisible;
+      return result;
+    }
+    auto written = canvas.write(word->phases, dither, limits);
+    if (!written) {
+      result.obstacle = FluxObstacle::TooFaint;
+      return result;
+    }
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      if (written->positions[i] != before[i]) {
+        written->positions[i] = rounding(written->positions[i]);
+      }
+    }
+    double excess = 0;  // of a limit, as a proportion
+    if (bounds.max_percent > 0) {
+      const double most = displacement(before, written->positions).max / diagonal * 100;
+      excess = std::max(excess, most / bounds.max_percent);
+    }
+    if (bounds.visibility > 0) {
+      const Mesh moved{written->positions, surface.mesh.triangles};
+      excess = std::max(excess, msdm2(surface.mesh, moved, kWindowsSeen) / bounds.visibility);
+    }
+    if (excess <= 1) {
+      result.mark = {word->payload, step_size(written->step), written->rms_percent,
+                     canvas.expected_evidence(written->step).after_usual_noise,
+                     static_cast<std::uint32_t>(canvas.used())};
+      result.positions = std::move(written->positions);
+      return result;
+    }
+    limits.rms_percent *= kReserve / excess;
+    if (limits.rms_percent < kLeastShareOfLimit * bounds.rms_percent) break;
+  }
+  result.obstacle = FluxObstacle::TooVisible;
+  return result;
+}
+
 }  // namespace
 
 FluxPayload flux_payload(std::span<const std::uint8_t> message, const Key& key, int bits) {
@@ -87,59 +147,36 @@ bool stands_for(const FluxPayload& payload, std::span<const std::uint8_t> messag
 }
 
 std::string shown(const FluxPayload& payload) {
+  if (payload.content == FluxContent::Fingerprint) return "a fingerprint";
   if (const auto message = message_in(payload)) return shown(*message);
   return "number " + to_hex(bytes_of(payload));
 }
 
 FluxMarking mark_flux(const Surface& surface, std::span<const std::uint8_t> message, const Key& key,
                       const FluxBounds& bounds, const std::function<Vec3(const Vec3&)>& rounding) {
-  FluxCanvas canvas(surface);
-  FluxMarking result;
-  result.obstacle = canvas.obstacle();
-  if (result.obstacle != FluxObstacle::None) return result;
-  const std::vector<Vec3>& before = surface.mesh.positions;
-  const double diagonal = surface_diagonal(surface.mesh);
-  const Dither dither(key);
-  FluxLimits limits{bounds.rms_percent};
-  for (int trial = 0; trial < kMostTrials; ++trial) {
+  const FluxCanvas canvas(surface);
+  const auto word_within = [&](const FluxLimits& limits) -> std::optional<WordToWrite> {
     const int bits = payload_bits(canvas, limits, message.size());
-    if (bits == 0) {
-      result.obstacle = trial == 0 ? FluxObstacle::TooFaint : FluxObstacle::TooVisible;
-      return result;
-    }
+    if (bits == 0) return std::nullopt;
     const FluxPayload payload = flux_payload(message, key, bits);
-    const BlockCode code(key, payload.content, bits);
-    auto written = canvas.write(code.encode(payload.value), dither, limits);
-    if (!written) {
-      result.obstacle = FluxObstacle::TooFaint;
-      return result;
+    return WordToWrite{payload,
+                       phases_of(BlockCode(key, payload.content, bits).encode(payload.value))};
+  };
+  return write_within(surface, canvas, word_within, key, bounds, rounding);
+}
+
+FluxMarking mark_flux_word(const Surface& surface, const FluxCanvas& canvas, const FluxPhases& word,
+                           const Key& key, const FluxBounds& bounds,
+                           const std::function<Vec3(const Vec3&)>& rounding) {
+  const auto word_within = [&](const FluxLimits& limits) -> std::optional<WordToWrite> {
+    const auto step = canvas.expected_step(limits);
+    if (!step || canvas.expected_evidence(*step).after_little_noise < kNeededOfWord) {
+      return std::nullopt;
     }
-    for (std::size_t i = 0; i < before.size(); ++i) {
-      if (written->positions[i] != before[i]) {
-        written->positions[i] = rounding(written->positions[i]);
-      }
-    }
-    double excess = 0;  // of a limit, as a proportion
-    if (bounds.max_percent > 0) {
-      const double most = displacement(before, written->positions).max / diagonal * 100;
-      excess = std::max(excess, most / bounds.max_percent);
-    }
-    if (bounds.visibility > 0) {
-      const Mesh moved{written->positions, surface.mesh.triangles};
-      excess = std::max(excess, msdm2(surface.mesh, moved, kWindowsSeen) / bounds.visibility);
-    }
-    if (excess <= 1) {
-      result.mark = {payload, step_size(written->step), written->rms_percent,
-                     canvas.expected_evidence(written->step).after_usual_noise,
-                     static_cast<std::uint32_t>(canvas.used())};
-      result.positions = std::move(written->positions);
-      return result;
-    }
-    limits.rms_percent *= kReserve / excess;
-    if (limits.rms_percent < kLeastShareOfLimit * bounds.rms_percent) break;
-  }
-  result.obstacle = FluxObstacle::TooVisible;
-  return result;
+    const auto used = static_cast<int>(canvas.used());
+    return WordToWrite{{0, used, FluxContent::Fingerprint}, word};
+  };
+  return write_within(surface, canvas, word_within, key, bounds, rounding);
 }
 
 }  // namespace triglyph

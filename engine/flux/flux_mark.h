@@ -58,4 +58,12 @@ struct FluxBounds {
                                     const Key& key, const FluxBounds& bounds,
                                     const std::function<Vec3(const Vec3&)>& rounding);
 
+// Marks a surface with a word that says itself what it stands for, if a reader who knows the word
+// will find it after little noise. The canvas is that of the surface; As mark_flux(), and may be
+// called from several threads at a time.
+[[nodiscard]] FluxMarking mark_flux_word(const Surface& surface, const FluxCanvas& canvas,
+                                         const FluxPhases& word, const Key& key,
+                                         const FluxBounds& bounds,
+                                         const std::function<Vec3(const Vec3&)>& rounding);
+
 }  // namespace triglyph

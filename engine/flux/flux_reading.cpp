@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/base/parallel.h"
+#include "engine/base/random.h"
 #include "engine/flux/closed_mesh.h"
 #include "engine/flux/curvature_flow.h"
 #include "engine/mesh/edge_length.h"
@@ -162,6 +163,22 @@ double promise_of(const Measurement& measurement, const AxesGuess& axes, const D
   return squares > 0 ? sum / std::sqrt(squares) : 0;
 }
 
+// Likewise, how close the pilots lie to their phase.
+double promise_of_pilots(const Measurement& measurement, const AxesGuess& axes,
+                         const Dither& dither, double step) {
+  double sum = 0;
+  double squares = 0;
+  for (std::size_t i = 0; i < kFunctionals; ++i) {
+    if (!is_pilot(i)) continue;
+    const Measured& m = measurement[axes.source[i]];
+    const double weight = m.used * (1 - m.other_weight);
+    if (weight < 0.1) continue;
+    sum += weight * std::cos(2 * M_PI * (m.value / step - dither.of(i, m.rung)));
+    squares += weight * weight / 2;
+  }
+  return squares > 0 ? sum / std::sqrt(squares) : 0;
+}
+
 // The attempts that are decoded, of all hypotheses: a mark that can be read is among the first few.
 constexpr std::size_t kDecoded = 256;
 
@@ -184,6 +201,25 @@ class FluxReader {
       if (one && (!best || one->evidence > best->evidence)) best = std::move(one);
     }
     return best;
+  }
+
+  // Adds the soft readings of the guesses of which the pilots say most.
+  void add_soft_readings(std::span<const Guess> guesses,
+                         std::vector<FluxSoftReading>& readings) const {
+    for (const Attempt& attempt : promising(guesses, true)) {
+      const SoftPhases phases = soft_phases(attempt.guess->measurement, attempt.axes->source,
+                                            dither_, step_size(attempt.step));
+      const double prior = -attempt.guess->price - attempt.axes->price -
+                           std::log2(static_cast<double>(kSteps * kSharpness.size()));
+      for (const double sharpness : kSharpness) {
+        double nats = 0;
+        for (std::size_t i = 0; i < kFunctionals; ++i) {
+          if (!is_pilot(i) || phases[i].used == 0) continue;
+          nats += phases[i].log_likelihood(0, sharpness, log_bessel(sharpness));
+        }
+        readings.push_back({phases, sharpness, prior + nats / M_LN2, attempt.guess->undone});
+      }
+    }
   }
 
   // Returns the most that speaks for a word under any of the guesses.
@@ -212,7 +248,8 @@ class FluxReader {
   }
 
  private:
-  [[nodiscard]] std::vector<Attempt> promising(std::span<const Guess> guesses) const {
+  [[nodiscard]] std::vector<Attempt> promising(std::span<const Guess> guesses,
+                                               bool by_pilots = false) const {
     std::vector<Attempt> attempts;
     for (const Guess& guess : guesses) {
       for (const AxesGuess& axes : axes_) {
@@ -224,7 +261,8 @@ class FluxReader {
         attempts.size(),
         [&](std::size_t i) {
           Attempt& a = attempts[i];
-          a.promise = promise_of(a.guess->measurement, *a.axes, dither_, step_size(a.step));
+          const auto promise = by_pilots ? promise_of_pilots : promise_of;
+          a.promise = promise(a.guess->measurement, *a.axes, dither_, step_size(a.step));
         },
         kOctants * kSteps);
     std::stable_sort(attempts.begin(), attempts.end(),
@@ -294,7 +332,19 @@ void for_guesses(const Surface& surface, const TryAll& try_all) {
   try_all(guesses);
 }
 
+// Hypotheses that are less likely than the best by so many bits add nothing. Where no hypothesis is
+// likelier than that there is no mark, all are kept.
+constexpr double kNegligibleWeight = 24;
+
+// Names the pilots among the uses of random numbers.
+constexpr std::uint64_t kPilots = 0x70696c6f74;  // "pilot"
+constexpr std::uint64_t kOneInPilots = 4;
+
 }  // namespace
+
+bool is_pilot(std::size_t functional) {
+  return random_bits(kPilots, 0, functional) % kOneInPilots == 0;
+}
 
 std::optional<FluxFound> read_flux(const Surface& surface, const Key& key, FluxEffort effort) {
   const FluxReader reader(key);
@@ -304,6 +354,22 @@ std::optional<FluxFound> read_flux(const Surface& surface, const Key& key, FluxE
     return found.has_value() || effort == FluxEffort::AsItIs;
   });
   return found;
+}
+
+std::vector<FluxSoftReading> read_flux_softly(const Surface& surface, const Key& key,
+                                              FluxEffort effort) {
+  const FluxReader reader(key);
+  std::vector<FluxSoftReading> readings;
+  for_guesses(surface, [&](std::span<const Guess> guesses) {
+    reader.add_soft_readings(guesses, readings);
+    return effort == FluxEffort::AsItIs;
+  });
+  double most = 0;
+  for (const FluxSoftReading& reading : readings) most = std::max(most, reading.weight);
+  std::erase_if(readings, [&](const FluxSoftReading& reading) {
+    return reading.weight < most - kNegligibleWeight;
+  });
+  return readings;
 }
 
 FluxEvidence flux_evidence(const Surface& surface, const Key& key, const FluxBits& word) {

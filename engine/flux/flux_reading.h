@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "engine/flux/block_code.h"
+#include "engine/flux/lattice.h"
 #include "engine/mesh/surface.h"
 
 namespace triglyph {
@@ -36,6 +38,26 @@ enum class FluxEffort : std::uint8_t {
 // times about 80.
 [[nodiscard]] std::optional<FluxFound> read_flux(const Surface& surface, const Key& key,
                                                  FluxEffort effort = FluxEffort::All);
+
+// Some functionals of a fingerprint have phase 0 whatever the name: pilots, by which a reader
+// tells how to read the others without knowing any name. About one in four.
+[[nodiscard]] bool is_pilot(std::size_t functional);
+
+// What a surface says of the phases of a fingerprint under one hypothesis of everything else.
+struct FluxSoftReading {
+  SoftPhases phases;
+  double sharpness = 0;
+  // The binary logarithm of the hypothesis' prior and of its likelihood by the pilots, whose mean
+  // without a mark is one.
+  double weight = 0;
+  std::string undone;
+};
+
+// Returns the readings under the hypotheses of which the pilots say most: of what was done to the
+// surface, the axes, the step and the sharpness. The priors of all hypotheses add up to one at
+// most. O(triangles), times about 80 unless the surface is taken as it is.
+[[nodiscard]] std::vector<FluxSoftReading> read_flux_softly(const Surface& surface, const Key& key,
+                                                            FluxEffort effort);
 
 // What speaks for a word that is known.
 struct FluxEvidence {

@@ -21,12 +21,14 @@ constexpr double kRungDoubt = 0.03;
 // Ratio of the share to the least share at which a functional is surely used.
 constexpr double kUseDoubt = 1.08;
 
-// Returns log I0(x), the log of the mean of exp(x cos) over a circle.
+// A rung that a mark used with a lower probability is not weighed.
+constexpr double kLeastOtherWeight = 1e-3;
+
+}  // namespace
+
 double log_bessel(double x) {
   return std::log(std::cyl_bessel_i(0.0, x));
 }
-
-}  // namespace
 
 double rung_unit(int rung) {
   return std::ldexp(kArea / kUsual, rung);
@@ -87,29 +89,42 @@ double SoftBits::evidence(std::span<const std::uint8_t> bits) const {
   return nats / M_LN2;
 }
 
-SoftBits soft_bits(const Measurement& measurement,
-                   std::span<const std::uint8_t, kFunctionals> source, const Dither& dither,
-                   double step, double sharpness) {
-  const double spread = log_bessel(sharpness);
-  SoftBits soft;
+double SoftPhase::log_likelihood(double phase, double sharpness, double log_mean) const {
+  const auto component = [&](double place) {
+    return std::exp(sharpness * std::cos(2 * M_PI * (place - phase)) - log_mean);
+  };
+  double likelihood = (1 - other_weight) * component(nearest);
+  if (other_weight > 0) likelihood += other_weight * component(other);
+  return std::log(1 - used + used * likelihood);
+}
+
+SoftPhases soft_phases(const Measurement& measurement,
+                       std::span<const std::uint8_t, kFunctionals> source, const Dither& dither,
+                       double step) {
+  SoftPhases phases;
   for (std::size_t i = 0; i < kFunctionals; ++i) {
     const Measured& m = measurement[source[i]];
     if (!(m.used > 0) || !std::isfinite(m.value)) continue;
-    // cosines of the phases under bit 0; bit 1 turns a phase by half a circle
-    const auto cosine = [&](double value, int rung) {
-      return std::cos(2 * M_PI * (value / step - dither.of(i, rung)));
-    };
-    const double nearest = cosine(m.value, m.rung);
-    const double other = m.other_weight > 1e-3 ? cosine(m.other_value(), m.other_rung) : 0;
-    const double other_weight = m.other_weight > 1e-3 ? m.other_weight : 0;
-    // divided by the mean likelihood of each component, so that the whole has the mean 1
-    const auto likelihood = [&](double sign) {
-      return 1 - m.used +
-             m.used * ((1 - other_weight) * std::exp(sign * sharpness * nearest - spread) +
-                       other_weight * std::exp(sign * sharpness * other - spread));
-    };
-    soft.base[i] = std::log(likelihood(-1));
-    soft.ratio[i] = std::log(likelihood(1)) - soft.base[i];
+    SoftPhase& phase = phases[i];
+    phase.used = m.used;
+    phase.nearest = m.value / step - dither.of(i, m.rung);
+    if (m.other_weight <= kLeastOtherWeight) continue;
+    phase.other = m.other_value() / step - dither.of(i, m.other_rung);
+    phase.other_weight = m.other_weight;
+  }
+  return phases;
+}
+
+SoftBits soft_bits(const Measurement& measurement,
+                   std::span<const std::uint8_t, kFunctionals> source, const Dither& dither,
+                   double step, double sharpness) {
+  const double log_mean = log_bessel(sharpness);
+  const SoftPhases phases = soft_phases(measurement, source, dither, step);
+  SoftBits soft;
+  for (std::size_t i = 0; i < kFunctionals; ++i) {
+    if (phases[i].used == 0) continue;
+    soft.base[i] = phases[i].log_likelihood(0.5, sharpness, log_mean);
+    soft.ratio[i] = phases[i].log_likelihood(0, sharpness, log_mean) - soft.base[i];
   }
   return soft;
 }

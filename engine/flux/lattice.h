@@ -62,6 +62,10 @@ class Dither {
   std::vector<double> shifts_;
 };
 
+// Where in its cell a mark brings each functional, besides the dither, in cells from 0 to 1: 0 or
+// 1/2 for a bit.
+using FluxPhases = std::array<double, kFunctionals>;
+
 // The steps that marks may have: a reader tries all.
 inline constexpr std::size_t kSteps = 14;
 
@@ -70,6 +74,27 @@ inline constexpr std::size_t kSteps = 14;
 
 // Sharpnesses at which a reader judges: for coarse, middling and fine readings.
 inline constexpr std::array<double, 3> kSharpness = {1.5, 4, 14};
+
+// Where in its cell a reader sees a functional, less the dither, in cells.
+struct SoftPhase {
+  double used = 0;     // the probability that a mark used the functional; 0: no information
+  double nearest = 0;  // on its likely rung
+  double other = 0;    // on the next likely
+  double other_weight = 0;
+
+  // Returns the logarithm of the likelihood, nats, that a mark brought the functional to a phase,
+  // whose mean over all phases is one. `log_mean` is log_bessel(sharpness).
+  [[nodiscard]] double log_likelihood(double phase, double sharpness, double log_mean) const;
+};
+using SoftPhases = std::array<SoftPhase, kFunctionals>;
+
+// Returns log I0(x), the logarithm of the mean of exp(x cos) over a circle.
+[[nodiscard]] double log_bessel(double x);
+
+// Returns the phases at one step; `source` as for soft_bits(). O(1).
+[[nodiscard]] SoftPhases soft_phases(const Measurement& measurement,
+                                     std::span<const std::uint8_t, kFunctionals> source,
+                                     const Dither& dither, double step);
 
 // Soft values of all functionals under one hypothesis of what was done to the mesh.
 struct SoftBits {

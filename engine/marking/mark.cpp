@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "engine/flux/flux_mark.h"
+#include "engine/marking/copies.h"
 #include "engine/marking/mark_stages.h"
 #include "engine/marking/way_out.h"
 #include "engine/mesh/surface_diagonal.h"
@@ -177,15 +178,10 @@ Marking with_units(const MarkTask& task, Marking flux_alone) {
   return marking;
 }
 
-}  // namespace
-
-Marking mark(const Surface& surface, const Payload& payload, const Key& key,
-             const MarkOptions& options, const Rounding& rounding, double number_step,
-             const Recut& recut) {
-  validate(options.format);
-  const auto* message = std::get_if<Message>(&payload);
-  if (message != nullptr) check_message(options.format, message->size());
-  const MarkTask task{surface, payload, key, options, {rounding, number_step, recut}};
+// Marks the task's message itself in its layers.
+Marking mark_message(const MarkTask& task, bool seeks_way_out) {
+  const auto* message = std::get_if<Message>(&task.payload);
+  const MarkOptions& options = task.options;
   MarkStages stages(task);
   if (message != nullptr && !options.remark) {
     if (auto found = mark_before(task, stages)) {
@@ -198,7 +194,7 @@ Marking mark(const Surface& surface, const Payload& payload, const Key& key,
     const FluxBounds bounds{kFluxMoves.at(static_cast<std::size_t>(options.strength)),
                             share * options.max_move_percent.value_or(0),
                             share * options.max_visibility};
-    FluxMarking flux = mark_flux(surface, *message, key, bounds, rounding);
+    FluxMarking flux = mark_flux(task.surface, *message, task.key, bounds, task.output.round);
     obstacle = flux.obstacle;
     if (obstacle == FluxObstacle::None && !reads(flux.mark, flux.positions, task)) {
       obstacle = FluxObstacle::TooFaint;  // by the output's numbers
@@ -216,10 +212,35 @@ Marking mark(const Surface& surface, const Payload& payload, const Key& key,
     marking = std::move(stages.marking());
     marking.status = MarkStatus::NoFlux;
   } else {
-    marking = mark_units_unseen(task, stages, surface.mesh, true);
+    marking = mark_units_unseen(task, stages, task.surface.mesh, seeks_way_out);
   }
   marking.flux_obstacle = obstacle;
   return marking;
+}
+
+}  // namespace
+
+std::optional<FoundMessage> mark_before(const MarkTask& task) {
+  if (task.options.remark) return std::nullopt;
+  return mark_before(task, MarkStages(task));
+}
+
+Marking mark(const Surface& surface, const Payload& payload, const Key& key,
+             const MarkOptions& options, const Rounding& rounding, double number_step,
+             const Recut& recut) {
+  validate(options.format);
+  const auto* message = std::get_if<Message>(&payload);
+  const bool is_copy = message != nullptr && options.carry == Carry::Fingerprint;
+  if (message != nullptr && !is_copy) check_message(options.format, message->size());
+  const MarkTask task{surface, payload, key, options, {rounding, number_step, recut}};
+  if (is_copy) return CopyPlan(task).copy(*message);
+  const bool has_choice = message != nullptr && options.carry == Carry::Any;
+  Marking marking = mark_message(task, !has_choice);
+  const bool is_refused =
+      marking.status != MarkStatus::Marked && marking.status != MarkStatus::AlreadyMarked;
+  if (!has_choice || !is_refused) return marking;
+  Marking copy = CopyPlan(task).copy(*message);
+  return copy.status == MarkStatus::Marked ? copy : mark_message(task, true);
 }
 
 }  // namespace triglyph

@@ -19,4 +19,10 @@ namespace triglyph {
                            const MarkOptions& options, const Rounding& rounding, double number_step,
                            const Recut& recut = {});
 
+struct MarkTask;
+
+// Returns the message that the task's mesh carries already in one of its layers, unless the task
+// marks it anyway.
+[[nodiscard]] std::optional<FoundMessage> mark_before(const MarkTask& task);
+
 }  // namespace triglyph

@@ -11,6 +11,7 @@
 #include "engine/base/stop.h"
 #include "engine/base/text.h"
 #include "engine/io/file_bytes.h"
+#include "engine/marking/copies.h"
 #include "engine/marking/extract.h"
 #include "engine/marking/mark.h"
 #include "engine/marking/readable.h"
@@ -19,17 +20,17 @@
 #include "engine/metric/deformation.h"
 #include "engine/metric/hausdorff.h"
 #include "engine/scheme/registry.h"
+#include "engine/trace/fingerprint_reading.h"
 
 namespace triglyph {
 namespace {
 
 // by FileStatus
-constexpr std::array<std::string_view, 16> kStatusNames = {
-    "marked",      "too small",      "positions too coarse",
-    "too visible", "already marked", "not verified",
-    "unreadable",  "malformed",      "unsupported",
-    "unwritable",  "usage",          "exists",
-    "failed",      "crashed",        "too slow",
+constexpr std::array<std::string_view, 17> kStatusNames = {
+    "marked",      "traceable",      "too small",    "positions too coarse",
+    "too visible", "already marked", "not verified", "unreadable",
+    "malformed",   "unsupported",    "unwritable",   "usage",
+    "exists",      "failed",         "crashed",      "too slow",
     "interrupted"};
 
 // Returns nothing for a mesh that was marked.
@@ -96,8 +97,8 @@ Encoding MarkedFile::encoding() const {
 }
 
 struct FileMarking::Work {
-  std::optional<MeshFile> file;
-  std::optional<Halfedges> halfedges;
+  std::shared_ptr<const MeshOfCopies> copies;  // null: the mesh is marked once
+  std::shared_ptr<LoadedMesh> mesh;
   Marking marking;
   std::optional<OutputFile> output;
 
@@ -131,14 +132,16 @@ ReadBack FileMarking::Work::read_from(const Surface& surface, const MarkedFile& 
 // Returns whether the mesh has polygons, and the mark can be read where they stay cut into the
 // triangles that were marked.
 bool FileMarking::Work::triangles_would_do(const MarkedFile& wanted, const Key& key) const {
-  const Mesh& mesh = file->mesh();
-  if (mesh.triangles.size() <= file->face_count()) return false;
-  const Mesh marked{marking.positions, mesh.triangles};
-  return read_from({marked, *halfedges}, wanted, key).is_the_mark;
+  const Mesh& before = mesh->file.mesh();
+  if (before.triangles.size() <= mesh->file.face_count()) return false;
+  const Mesh marked{marking.positions, before.triangles};
+  return read_from({marked, mesh->halfedges}, wanted, key).is_the_mark;
 }
 
-FileMarking::FileMarking(std::filesystem::path mesh, std::filesystem::path out, MarkRequest request)
+FileMarking::FileMarking(std::filesystem::path mesh, std::filesystem::path out, MarkRequest request,
+                         std::shared_ptr<const MeshOfCopies> copies)
     : work_(std::make_unique<Work>()) {
+  work_->copies = std::move(copies);
   result_.mesh = std::move(mesh);
   result_.out = std::move(out);
   result_.request = std::move(request);
@@ -181,7 +184,8 @@ void FileMarking::run_stage(double& seconds, const Stage& stage) noexcept {
 }
 
 void FileMarking::describe(const Marking& marking) {
-  result_.format = marking.format;
+  // readers of a fingerprint know its formats by what was asked for
+  if (!marking.is_fingerprint) result_.format = marking.format;
   if (!marking.scheme_options.empty()) {
     result_.request.options.scheme_options = marking.scheme_options;
   }
@@ -200,38 +204,43 @@ void FileMarking::describe(const Marking& marking) {
 void FileMarking::load() noexcept {
   run_stage(result_.times.load, [&] {
     try {
-      work_->file = MeshFile::open(result_.mesh);
+      work_->mesh =
+          work_->copies ? work_->copies->loaded(result_.mesh) : LoadedMesh::open(result_.mesh);
     } catch (const Error&) {
       note_input_hash();  // so that a later run knows that it is the same file
       throw;
     }
-    const MeshFile& file = *work_->file;
+    const MeshFile& file = work_->mesh->file;
     result_.file_format = name_of(file.format());
     result_.vertices = file.vertex_count();
     result_.points = file.mesh().positions.size();
     result_.faces = file.face_count();
-    parallel_pair([&] { result_.input_hash = content_hash(file.bytes()); },
-                  [&] { work_->halfedges = build_halfedges(file.mesh()); });
+    result_.input_hash = work_->mesh->hash;
   });
+}
+
+Marking FileMarking::marked_as(const MarkOptions& options, const Key& key) const {
+  if (work_->copies) return work_->copies->copy(result_.request.message(), options, key);
+  const LoadedMesh& mesh = *work_->mesh;
+  return triglyph::mark(mesh.surface(), result_.request.payload, key, options, mesh.rounding(),
+                        mesh.file.number_step(), mesh.recut());
 }
 
 // Marks the loaded mesh; ends the stages if it is refused.
 void FileMarking::mark_as(const MarkOptions& options, const Key& key) {
-  const MeshFile& file = *work_->file;
-  const Surface surface{file.mesh(), *work_->halfedges};
-  const auto rounding = [&](const Vec3& point) { return file.round(point); };
-  const auto recut = [&](std::span<const Vec3> positions) { return file.triangles_at(positions); };
-  work_->marking = triglyph::mark(surface, result_.request.payload, key, options, rounding,
-                                  file.number_step(), file.has_polygons() ? Recut(recut) : Recut());
+  const MeshFile& file = work_->mesh->file;
+  work_->marking = marked_as(options, key);
   describe(work_->marking);
   if (const auto status = refused_status(work_->marking.status)) {
     const bool had_units =
         work_->marking.units_valid > 0 && work_->marking.units_valid >= work_->marking.parts_needed;
-    if (*status == FileStatus::TooSmall && had_units && file.has_polygons()) {
+    const bool is_message = options.carry != Carry::Fingerprint;
+    if (*status == FileStatus::TooSmall && had_units && is_message && file.has_polygons()) {
       MarkOptions units = options;
       units.flux = LayerUse::No;
-      const Marking uncut = triglyph::mark(surface, result_.request.payload, key, units, rounding,
-                                           file.number_step());
+      units.carry = Carry::Whole;
+      const Marking uncut = triglyph::mark(work_->mesh->surface(), result_.request.payload, key,
+                                           units, work_->mesh->rounding(), file.number_step());
       if (uncut.status == MarkStatus::Marked) {
         end(FileStatus::NotVerified, not_read_back(0, uncut.units_assigned, true));
         return;
@@ -246,7 +255,7 @@ void FileMarking::mark_as(const MarkOptions& options, const Key& key) {
 }
 
 void FileMarking::write_output() {
-  const std::vector<char> bytes = work_->file->patched(work_->marking.positions);
+  const std::vector<char> bytes = work_->mesh->file.patched(work_->marking.positions);
   work_->output.emplace(result_.out);
   parallel_pair([&] { result_.output_hash = content_hash(bytes); },
                 [&] { work_->output->write(bytes); });
@@ -256,18 +265,24 @@ void FileMarking::mark(const Key& key) noexcept {
   run_stage(result_.times.mark, [&] {
     MarkOptions& options = result_.request.options;
     result_.key_fingerprint = key.fingerprint();
-    if (result_.request.is_fill()) {
-      options.scheme_options = fixed_for(work_->file->mesh(), options.scheme_options);
+    MeshFile& file = work_->mesh->file;
+    if (work_->copies) {  // whose numbers are those of all copies
+      mark_as(options, key);
+      result_.digits = work_->copies->digits();
+      return;
     }
-    work_->file->set_more_digits(options.digits.value_or(0));
-    result_.digits = work_->file->is_decimal() ? options.digits.value_or(0) : 0;
+    if (result_.request.is_fill()) {
+      options.scheme_options = fixed_for(file.mesh(), options.scheme_options);
+    }
+    file.set_more_digits(options.digits.value_or(0));
+    result_.digits = file.is_decimal() ? options.digits.value_or(0) : 0;
     mark_as(options, key);
-    const bool lacks_digits = result_.status == FileStatus::TooCoarse && work_->file->is_decimal();
+    const bool lacks_digits = result_.status == FileStatus::TooCoarse && file.is_decimal();
     if (!lacks_digits || options.digits) return;
     result_.status = FileStatus::Marked;
     result_.error.clear();
     result_.digits = 1;
-    work_->file->set_more_digits(result_.digits);
+    file.set_more_digits(result_.digits);
     mark_as(options, key);
   });
 }
@@ -278,6 +293,10 @@ void FileMarking::write() noexcept {
 
 void FileMarking::read_back(const Key& key) noexcept {
   run_stage(result_.times.read_back, [&] {
+    if (work_->marking.is_fingerprint) {
+      if (reads_fingerprint(key)) result_.status = FileStatus::Traceable;
+      return;
+    }
     const auto read_written = [&] {
       const Readable written(work_->output->temporary_path());
       return work_->read_from(written.surface(), result_, key);
@@ -304,9 +323,26 @@ void FileMarking::read_back(const Key& key) noexcept {
   });
 }
 
+// Returns whether the output's fingerprint is of use; otherwise ends the stages.
+bool FileMarking::reads_fingerprint(const Key& key) {
+  const Marking& marking = work_->marking;
+  const Readable written(work_->output->temporary_path());
+  MarkOptions options = result_.request.options;
+  if (!marking.flux) options.flux = LayerUse::No;
+  const FingerprintCode code = fingerprint_code(key, options);
+  const std::vector<ScoreTable> tables = read_fingerprints(
+      written.surface(), key, code, fingerprint_encodings(options), FluxEffort::AsItIs);
+  result_.evidence = evidence_of(tables, code, code.seed_of(result_.request.message())).bits;
+  result_.units_embedded = static_cast<std::uint32_t>(marking.carriers.size());
+  if (options.detail) result_.units = marking.carriers;
+  if (result_.evidence >= kTraceable) return true;
+  end(FileStatus::TooSmall, too_little_evidence(result_.evidence, kTraceable));
+  return false;
+}
+
 void FileMarking::measure() noexcept {
   run_stage(result_.times.measure, [&] {
-    const Mesh& mesh = work_->file->mesh();
+    const Mesh& mesh = work_->mesh->file.mesh();
     const std::vector<Vec3>& marked = work_->marking.positions;
     const Displacement moved = displacement(mesh.positions, marked);
     result_.displacement_max = moved.max;

@@ -13,6 +13,7 @@
 
 #include "engine/base/error.h"
 #include "engine/marking/marking.h"
+#include "engine/marking/mesh_of_copies.h"
 #include "engine/marking/options.h"
 #include "engine/message/key.h"
 
@@ -20,6 +21,9 @@ namespace triglyph {
 
 enum class FileStatus {
   Marked,  // the output exists, and its mark was read back from it
+  // Likewise; what it carries is the fingerprint of the message, which is found by whoever has the
+  // message or a list in which it is.
+  Traceable,
   // All others: there is no output.
   TooSmall,       // fewer units than the message has parts
   TooCoarse,      // the file's numbers cannot hold the mark
@@ -74,6 +78,7 @@ struct MarkedFile {
   std::uint32_t units_assigned = 0;  // given a word
   std::uint32_t units_embedded = 0;  // whose word was read back from the output
   std::optional<FluxMark> flux;      // the flux layer
+  double evidence = 0;               // of a fingerprint in the output, bits: see evidence_of()
   int digits = 0;                    // more than the file's that moved coordinates have
   double cost_max = 0;               // of the assignment, model units
   double cost_sum = 0;               // likewise
@@ -88,7 +93,9 @@ struct MarkedFile {
   std::string key_fingerprint;
   StageTimes times;
 
-  [[nodiscard]] bool is_marked() const { return status == FileStatus::Marked; }
+  [[nodiscard]] bool is_marked() const {
+    return status == FileStatus::Marked || status == FileStatus::Traceable;
+  }
   // Returns the encoding of the mark, with the word format that fill chose.
   [[nodiscard]] Encoding encoding() const;
 };
@@ -97,7 +104,10 @@ struct MarkedFile {
 // not throw: an error becomes the status of the result, and later stages then do nothing.
 class FileMarking {
  public:
-  FileMarking(std::filesystem::path mesh, std::filesystem::path out, MarkRequest request);
+  // `copies` are the mesh of several copies, of which this is one, if it is shared; its fingerprint
+  // must be asked for, by options that differ in the message alone.
+  FileMarking(std::filesystem::path mesh, std::filesystem::path out, MarkRequest request,
+              std::shared_ptr<const MeshOfCopies> copies = nullptr);
   ~FileMarking();
   FileMarking(FileMarking&&) noexcept;
 
@@ -128,7 +138,9 @@ class FileMarking {
   void run_stage(double& seconds, const Stage& stage) noexcept;
   void end(FileStatus status, const std::string& reason);
   void describe(const Marking& marking);
+  [[nodiscard]] Marking marked_as(const MarkOptions& options, const Key& key) const;
   void mark_as(const MarkOptions& options, const Key& key);
+  [[nodiscard]] bool reads_fingerprint(const Key& key);
   void write_output();
 
   MarkedFile result_;

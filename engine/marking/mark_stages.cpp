@@ -35,11 +35,6 @@ constexpr std::uint32_t kMostWordsPerPart = 4;
 // carries a part by itself is needed more.
 constexpr std::size_t kUnitsPerWord = 4;
 
-// Share of a cell's width from which on the distance between the output's numbers explains that
-// most units were lost: rounding moves each of a unit's points by up to half that distance, which
-// leaves no margin.
-constexpr double kCoarseStep = 0.05;
-
 // Returns the number of bits that tell the units apart, at most those of the format.
 int fill_subscript_bits(std::size_t units, const WordFormat& format) {
   return std::clamp(static_cast<int>(std::bit_width(units - 1)), 1, format.subscript_bits);

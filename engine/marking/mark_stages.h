@@ -16,6 +16,11 @@
 
 namespace triglyph {
 
+// Share of a cell's width from which on the distance between the output's numbers explains that
+// most units were lost: rounding moves each of a unit's points by up to half that distance, which
+// leaves no margin.
+inline constexpr double kCoarseStep = 0.05;
+
 // What the output can hold.
 struct OutputLimits {
   const Rounding& round;

@@ -50,6 +50,7 @@ struct FoundMessage {
 
 struct Marking {
   MarkStatus status = MarkStatus::Marked;
+  bool is_fingerprint = false;      // of the message, in place of the message itself
   std::vector<Vec3> positions;      // of all points, as the file will hold them
   std::vector<Word> words;          // one per part, and of a message others with parities
   WordFormat format;                // of the words; fill chooses the subscript bits

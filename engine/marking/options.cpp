@@ -6,14 +6,19 @@
 #include "engine/base/error.h"
 #include "engine/message/key.h"
 #include "engine/scheme/registry.h"
+#include "engine/trace/fingerprint_reading.h"
 
 namespace triglyph {
 namespace {
 
 constexpr std::array<std::string_view, 3> kAssignNames = {"sequential", "bottleneck", "sum"};
 
-// The three forms of the payload; values may hold at most one of them.
-constexpr std::array<std::string_view, 3> kMessageKeys = {"message", "message_hex", "fill"};
+// The forms of the payload; values may hold at most one of them.
+constexpr std::array<std::string_view, 4> kMessageKeys = {"message", "message_hex", "recipient",
+                                                          "fill"};
+
+// by Carry
+constexpr std::array<std::string_view, 3> kCarryNames = {"message", "any", "fingerprint"};
 
 // A search longer than a day is taken for a typing error; seeds must be exact as JSON numbers.
 constexpr double kMostSeconds = 86400;
@@ -48,15 +53,23 @@ OptionSpec scheme_spec() {
 }
 
 std::vector<OptionSpec> message_specs() {
-  return {{"message", OptionKind::Text, "", {}, {}, "", "Message to hide, 1 to 256 bytes"},
-          {"message_hex", OptionKind::Text, "", {}, {}, "", "Message in hexadecimal"},
-          {"fill",
-           OptionKind::Flag,
-           "",
-           {},
-           {},
-           "",
-           "Hide a random message as long as the capacity, as in the paper's experiment"}};
+  return {
+      {"message", OptionKind::Text, "", {}, {}, "", "Message to hide, 1 to 256 bytes"},
+      {"message_hex", OptionKind::Text, "", {}, {}, "", "Message in hexadecimal"},
+      {"recipient",
+       OptionKind::Text,
+       "",
+       {},
+       {},
+       "",
+       "Name of whom the copy is for, 1 to 256 bytes: hides its fingerprint, which trace finds"},
+      {"fill",
+       OptionKind::Flag,
+       "",
+       {},
+       {},
+       "",
+       "Hide a random message as long as the capacity, as in the paper's experiment"}};
 }
 
 using Options = MarkOptions;
@@ -93,6 +106,12 @@ OptionTable<Options> make_table() {
       bits_option("part_bits", &WordFormat::part_bits, {2, 32}, "Message bits in a unit, w"),
       choice_option<Options>("strength", &Options::strength, strength_names(), "normal",
                              "How much the mark may change the mesh, and survives"),
+      choice_option<Options>(
+          "carry", &Options::carry, kCarryNames, "any with auto, or else message",
+          "What the mark carries: the message, or its fingerprint, which trace finds for whoever "
+          "knows the message and which takes fewer units, or any of these, the first first"),
+      count_option<Options>("collusion", &Options::collusion, {1, kMostColluders}, "copies", "1",
+                            "Fingerprints name one of so many who combine their copies"),
       number_option<Options>("max_visibility", &Options::max_visibility, {0, 1}, "MSDM2",
                              "0.05 with --strength light, or else 0",
                              "Visibility that the mark keeps within; 0: by strength alone"),
@@ -227,6 +246,25 @@ MarkOptions resolved_options(const OptionValues& values, std::string_view name, 
   return options;
 }
 
+void check_payload(const MarkRequest& request) {
+  const MarkOptions& options = request.options;
+  const std::size_t bytes = request.message().size();
+  if (options.carry != Carry::Fingerprint) {
+    check_message(options.format, bytes);
+  } else if (bytes < kMinMessageBytes || bytes > kMaxMessageBytes) {
+    throw Error(ErrorCode::Usage, {}, "",
+                "a recipient's name has 1 to 256 bytes, not " + std::to_string(bytes));
+  }
+  if (options.carry == Carry::Fingerprint && options.format.part_bits > kMostFingerprintBits) {
+    throw Error(ErrorCode::Usage, {}, "",
+                "fingerprints take up to " + std::to_string(kMostFingerprintBits) + " part bits");
+  }
+  if (options.collusion > 1 && options.carry != Carry::Fingerprint) {
+    throw Error(ErrorCode::Usage, {}, "",
+                "collusion is of copies: it needs a recipient, or carry fingerprint");
+  }
+}
+
 }  // namespace
 
 std::span<const std::string_view> assign_names() {
@@ -265,6 +303,7 @@ MarkOptions default_mark_options(std::string_view name, bool fill, Strength stre
   options.scheme = layers.scheme;
   options.units = layers.units;
   options.flux = layers.flux;
+  options.carry = layers.flux == LayerUse::IfPossible && !fill ? Carry::Any : Carry::Whole;
   options.strength = strength;
   options.format = defaults.format;
   options.scheme_options = defaults.options;
@@ -360,17 +399,28 @@ MarkRequest resolve(const OptionValues& values) {
     request.payload = from_hex(*hex);
   } else if (const std::string* text = text_of("message")) {
     request.payload = Message(text->begin(), text->end());
+  } else if (const std::string* name = text_of("recipient")) {
+    request.payload = Message(name->begin(), name->end());
   } else {
-    throw Error(ErrorCode::Usage, {}, "", "no message: give --message, --message-hex or --fill");
+    throw Error(ErrorCode::Usage, {}, "",
+                "no message: give --message, --message-hex, --recipient or --fill");
   }
-  const std::size_t bytes = request.is_fill() ? 0 : request.message().size();
+  const bool is_copy = text_of("recipient") != nullptr;
+  const auto carry = values.find("carry");
+  const bool is_fingerprint = is_copy || (carry != values.end() &&
+                                          carry->second == OptionValue(std::string("fingerprint")));
+  // what a fingerprint takes does not depend on the length of its name
+  const std::size_t bytes = request.is_fill() ? 0
+                            : is_fingerprint  ? kMinMessageBytes
+                                              : request.message().size();
   request.options = resolved_options(values, scheme_of(values), request.is_fill(), bytes);
+  if (is_copy) request.options.carry = Carry::Fingerprint;
   if (request.is_fill() && request.options.flux == LayerUse::Yes) {
     throw Error(ErrorCode::Usage, {}, "",
                 "the flux layer carries a message or its number: --fill needs a scheme of units");
   }
   if (request.is_fill()) request.options.flux = LayerUse::No;
-  if (!request.is_fill()) check_message(request.options.format, request.message().size());
+  if (!request.is_fill()) check_payload(request);
   return request;
 }
 

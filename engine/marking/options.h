@@ -12,6 +12,7 @@
 #include "engine/base/options.h"
 #include "engine/layout/layout.h"
 #include "engine/message/words.h"
+#include "engine/scheme/encoding.h"
 #include "engine/scheme/scheme.h"
 #include "engine/scheme/scheme_options.h"
 
@@ -26,19 +27,6 @@ enum class AssignMethod {
 // Returns the names in the order of AssignMethod: "sequential", "bottleneck", "sum".
 [[nodiscard]] std::span<const std::string_view> assign_names();
 [[nodiscard]] std::string_view name_of(AssignMethod method);
-
-// How a mark is encoded in a mesh: all that a reader must know besides the key.
-// The encoding of the flux layer by name.
-inline constexpr std::string_view kFluxScheme = "flux";
-
-struct Encoding {
-  // of units, or "flux", which has no format and no options
-  std::string scheme = "tsq";
-  WordFormat format;
-  OptionValues scheme_options;  // all options of the scheme
-
-  bool operator==(const Encoding&) const = default;
-};
 
 // Whether a mark has a layer.
 enum class LayerUse : std::uint8_t {
@@ -59,11 +47,21 @@ struct Layers {
 // Returns the names by Strength: "light", "normal", "strong".
 [[nodiscard]] std::span<const std::string_view> strength_names();
 
+// What a mark carries of a message.
+enum class Carry : std::uint8_t {
+  Whole,        // all of it, to be read by whoever has the key
+  Any,          // likewise, or where it does not fit its fingerprint
+  Fingerprint,  // the fingerprint of it alone, to be found by whoever has the key and the message
+};
+
 struct MarkOptions {
   std::string scheme = "tsq";  // of the layer of units
   LayerUse units = LayerUse::Yes;
   LayerUse flux = LayerUse::No;
   Strength strength = Strength::Normal;
+  Carry carry = Carry::Whole;
+  // Fingerprints name one of so many that combine their copies.
+  std::uint32_t collusion = 1;
   // Every layer moves the surface less where MSDM2 of the whole mark would exceed this; 0: no
   // limit.
   double max_visibility = 0;

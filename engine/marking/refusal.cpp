@@ -1,7 +1,10 @@
 #include "engine/marking/refusal.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 
+#include "engine/marking/copies.h"
 #include "engine/marking/way_out.h"
 
 namespace triglyph {
@@ -60,6 +63,13 @@ std::string too_small_for_message(const Marking& marking, const MarkRequest& req
     return needs + std::to_string(marking.parts_carried) + " carried: " + farther;
   }
   return carries_nothing(marking, request.options);
+}
+
+std::string too_few_bits(const Marking& marking) {
+  return too_little_evidence(
+      static_cast<double>(marking.carriers.size()) * marking.format.part_bits +
+          (marking.flux ? marking.flux->expected_evidence : 0),
+      kTraceable);
 }
 
 std::string too_small_for_fill(const Marking& marking, const MarkOptions& options) {
@@ -123,6 +133,7 @@ std::string size_of(std::uint64_t bytes) {
 std::string refusal(const Marking& marking, const MarkRequest& request, double number_step) {
   switch (marking.status) {
     case MarkStatus::TooSmall:
+      if (marking.is_fingerprint) return too_few_bits(marking);
       return request.is_fill() ? too_small_for_fill(marking, request.options)
                                : too_small_for_message(marking, request);
     case MarkStatus::AlreadyMarked:
@@ -145,6 +156,12 @@ std::string not_read_back(std::uint32_t found, std::uint32_t units, bool triangl
          (triangles_would_do ? "its polygons are cut into other triangles once points have moved; "
                                "export the mesh as triangles, from which the mark can be read"
                              : "try another --scheme");
+}
+
+std::string too_little_evidence(double bits, double needed) {
+  return "a fingerprint in this mesh leaves " + short_text(std::max(0.0, std::floor(bits))) +
+         " bits of evidence, " + short_text(needed) +
+         " are needed to name one of a thousand: it has too few points";
 }
 
 // No mesh is estimated at less than a mebibyte, so that this budget has room for one at a time.

@@ -19,6 +19,9 @@ namespace triglyph {
 [[nodiscard]] std::string not_read_back(std::uint32_t found, std::uint32_t units,
                                         bool triangles_would_do);
 
+// Returns one line for a mesh whose fingerprint leaves too few bits of evidence.
+[[nodiscard]] std::string too_little_evidence(double bits, double needed);
+
 // Returns one line for a mesh that did not get the memory that it takes by estimate_memory(): the
 // estimate, and how a run leaves it all there is.
 [[nodiscard]] std::string too_little_memory(std::uint64_t estimate);

@@ -3,9 +3,11 @@
 #include <algorithm>
 
 #include "engine/base/error.h"
+#include "engine/marking/copies.h"
 #include "engine/marking/extract.h"
 #include "engine/marking/readable.h"
 #include "engine/scheme/registry.h"
+#include "engine/trace/fingerprint_reading.h"
 
 namespace triglyph {
 namespace {
@@ -73,13 +75,30 @@ bool carries(const FluxMark& mark, const Surface& surface, const Key& key) {
   return flux_evidence(surface, key, code.encode(mark.payload.value)).evidence >= kBelieved;
 }
 
+// Says whether the surface carries the fingerprint that was written: one name is tried.
+bool carries_fingerprint(const MarkedFile& marked, const Surface& surface, const Key& key) {
+  MarkOptions options = marked.request.options;
+  if (!marked.flux) options.flux = LayerUse::No;
+  const FingerprintCode code = fingerprint_code(key, options);
+  const FingerprintSeed seed = code.seed_of(marked.request.message());
+  for (const FluxEffort effort : {FluxEffort::AsItIs, FluxEffort::All}) {
+    const std::vector<ScoreTable> tables =
+        read_fingerprints(surface, key, code, fingerprint_encodings(options), effort);
+    if (evidence_of(tables, code, seed).bits >= kBelieved) return true;
+    if (!marked.flux) break;
+  }
+  return false;
+}
+
 // Fills in the verdict and its reason.
 void judge(const Readable& readable, const MarkedFile& marked, const Key& key, bool carries_mark,
            Verification& result) {
   if (!carries_mark) {
     result.verdict = FileVerdict::Lost;
     result.detail = marked.key_fingerprint == key.fingerprint()
-                        ? "the message is not in the file"
+                        ? std::string(marked.status == FileStatus::Traceable ? "the fingerprint"
+                                                                             : "the message") +
+                              " is not in the file"
                         : "marked under another key, " + marked.key_fingerprint;
   } else if (content_hash(readable.file.bytes()) != marked.output_hash) {
     result.verdict = FileVerdict::Altered;
@@ -123,6 +142,10 @@ Verification verify_file(const MarkedFile& marked, const Key& key, bool locate) 
   try {
     const Readable readable(marked.out);
     const bool right_key = marked.key_fingerprint == key.fingerprint();
+    if (marked.status == FileStatus::Traceable) {
+      judge(readable, marked, key, carries_fingerprint(marked, readable.surface(), key), result);
+      return result;
+    }
     const bool carries_flux = marked.flux && carries(*marked.flux, readable.surface(), key);
     if (marked.parts == 0) {
       judge(readable, marked, key, carries_flux, result);

@@ -150,7 +150,15 @@ std::uint32_t Key::tag(std::span<const std::uint8_t> message) const {
 }
 
 std::uint64_t Key::number(std::span<const std::uint8_t> message) const {
-  const auto digest = hash<crypto_generichash_BYTES_MIN>(message, derive(KeyUse::FluxNumber));
+  return keyed_number(message, KeyUse::FluxNumber);
+}
+
+std::uint64_t Key::copy_seed(std::span<const std::uint8_t> name) const {
+  return keyed_number(name, KeyUse::CopySeed);
+}
+
+std::uint64_t Key::keyed_number(std::span<const std::uint8_t> bytes, KeyUse use) const {
+  const auto digest = hash<crypto_generichash_BYTES_MIN>(bytes, derive(use));
   std::uint64_t number = 0;
   for (std::size_t i = 0; i < sizeof(number); ++i) number |= std::uint64_t{digest[i]} << (8 * i);
   return number;

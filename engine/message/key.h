@@ -24,6 +24,8 @@ enum class KeyUse : std::uint64_t {
   FluxDither = 7,
   FluxScramble = 8,
   FluxNumber = 9,
+  CopySeed = 10,
+  CopyBias = 11,
 };
 
 class Key {
@@ -65,6 +67,10 @@ class Key {
   // recognises it. Independent of the tag.
   [[nodiscard]] std::uint64_t number(std::span<const std::uint8_t> message) const;
 
+  // Returns a keyed 64-bit number of a name (BLAKE2b), from which the bits of its fingerprint
+  // follow: see FingerprintCode. Secret, and independent of the others.
+  [[nodiscard]] std::uint64_t copy_seed(std::span<const std::uint8_t> name) const;
+
   // Returns 16 hexadecimal digits that identify the key in records without revealing it.
   [[nodiscard]] std::string fingerprint() const;
 
@@ -73,6 +79,7 @@ class Key {
  private:
   Key() = default;
   [[nodiscard]] std::array<std::uint8_t, kBytes> derive(KeyUse use) const;
+  [[nodiscard]] std::uint64_t keyed_number(std::span<const std::uint8_t> bytes, KeyUse use) const;
   std::array<std::uint8_t, kBytes> secret_{};
 };
 

@@ -89,17 +89,11 @@ std::vector<double> Votes::balances() const {
 // probability that its weight tells, and then has each bit of v but for an error that the bit's
 // weight tells; or else it is random. Values that differ from a vote in two bits or more are as
 // likely under it as if it were random.
-void Votes::weigh_bits(const std::vector<Vote>& votes, const Trust& trust,
-                       std::span<double> ratios) const {
-  if (votes.empty()) return;
+std::vector<Votes::Gain> Votes::gains(std::uint32_t part_index, const Trust& trust) const {
   const auto part_bits = static_cast<std::size_t>(code_->format().part_bits);
   const double values = std::ldexp(1.0, code_->format().part_bits);
-  struct Gain {
-    std::uint32_t value;
-    double log;
-  };
-  std::vector<Gain> gains;  // of values over all that no vote is near
-  for (const Vote& vote : votes) {
+  std::vector<Gain> gains;
+  for (const Vote& vote : votes_[part_index]) {
     const double genuine = trust.most * std::pow(double{vote.weight}, trust.power);
     double exact = 1;               // probability that a genuine vote has all bits right
     std::array<double, 32> odds{};  // of an error
@@ -126,11 +120,28 @@ void Votes::weigh_bits(const std::vector<Vote>& votes, const Trust& trust,
     }
   }
   gains.resize(kept);
+  return gains;
+}
+
+double Votes::far_log(std::uint32_t part_index, const Trust& trust) const {
+  double sum = 0;
+  for (const Vote& vote : votes_[part_index]) {
+    sum += std::log1p(-trust.most * std::pow(double{vote.weight}, trust.power));
+  }
+  return sum;
+}
+
+void Votes::weigh_bits(std::uint32_t part_index, const Trust& trust,
+                       std::span<double> ratios) const {
+  const std::vector<Gain> known = gains(part_index, trust);
+  if (known.empty()) return;
+  const auto part_bits = static_cast<std::size_t>(code_->format().part_bits);
+  const double values = std::ldexp(1.0, code_->format().part_bits);
   double most = 0;
-  for (const Gain& gain : gains) most = std::max(most, gain.log);
-  const double others = (values - static_cast<double>(kept)) * std::exp(-most);
+  for (const Gain& gain : known) most = std::max(most, gain.log);
+  const double others = (values - static_cast<double>(known.size())) * std::exp(-most);
   std::vector<double> set(part_bits, others / 2), clear(part_bits, others / 2);
-  for (const Gain& gain : gains) {
+  for (const Gain& gain : known) {
     const double share = std::exp(gain.log - most);
     for (std::size_t bit = 0; bit < part_bits; ++bit) {
       ((gain.value >> bit) & 1 ? set : clear)[bit] += share;
@@ -145,7 +156,8 @@ std::vector<double> Votes::bit_evidence(const Trust& trust) const {
   const auto part_bits = static_cast<std::size_t>(code_->format().part_bits);
   std::vector<double> ratios(bits_.size(), 0);
   parallel_for(votes_.size(), [&](std::size_t index) {
-    weigh_bits(votes_[index], trust, std::span(ratios).subspan(index * part_bits, part_bits));
+    weigh_bits(static_cast<std::uint32_t>(index), trust,
+               std::span(ratios).subspan(index * part_bits, part_bits));
   });
   return ratios;
 }

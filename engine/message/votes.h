@@ -59,6 +59,18 @@ class Votes {
   // a bit. O(votes * part_bits), parallel.
   [[nodiscard]] std::vector<double> bit_evidence(const Trust& trust) const;
 
+  // What the votes on a part say of one of its values.
+  struct Gain {
+    std::uint32_t value = 0;
+    double log = 0;  // of its likelihood, in relation to that of a value that no vote is near
+  };
+  // Returns the logarithm of the likelihood of the votes on the part if it has a value that no vote
+  // is near, in relation to that of random votes; 0 or less.
+  [[nodiscard]] double far_log(std::uint32_t part_index, const Trust& trust) const;
+  // Returns the gains of the values that differ from a vote on the part in a bit at most, by
+  // ascending value; empty without votes.
+  [[nodiscard]] std::vector<Gain> gains(std::uint32_t part_index, const Trust& trust) const;
+
   // Returns the agreement of the votes on one part, from 0 (tied, or none) to 1 (unanimous): the
   // minimum over its bits of |for - against| / (for + against).
   [[nodiscard]] double agreement(std::uint32_t part_index) const;
@@ -77,8 +89,7 @@ class Votes {
     std::array<float, 32> bit_weights{};
   };
   [[nodiscard]] Ranking rank(const std::vector<Vote>& votes) const;
-  void weigh_bits(const std::vector<Vote>& votes, const Trust& trust,
-                  std::span<double> ratios) const;
+  void weigh_bits(std::uint32_t part_index, const Trust& trust, std::span<double> ratios) const;
 
   const WordCode* code_;
   std::vector<Bit> bits_;  // part_bits per part

@@ -188,7 +188,7 @@ TEST(Ledger, OpensOneOfAnEarlierSchemaWithAllThatItKnows) {
     ledger.for_each_result([&](const LedgerResult&) { ++results; });
     EXPECT_EQ(results, 1U);
   }
-  EXPECT_EQ(test::read_all(path)[63], 2);
+  EXPECT_EQ(test::read_all(path)[63], 3);
 }
 
 TEST(Ledger, TakesWritersOfManyThreadsAndProcesses) {

@@ -71,13 +71,13 @@ TEST(MarkOptions, AMessageInAnyFormReplacesOneInAnyOther) {
   EXPECT_THROW((void)resolve({{"message_hex", std::string()}}), Error);
 }
 
-TEST(MarkOptions, AMissingMessageIsRefusedWithItsThreeForms) {
+TEST(MarkOptions, AMissingMessageIsRefusedWithItsForms) {
   try {
     (void)resolve({{"fill", false}});
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::Usage);
-    EXPECT_STREQ(error.what(), "no message: give --message, --message-hex or --fill");
+    EXPECT_STREQ(error.what(), "no message: give --message, --message-hex, --recipient or --fill");
   }
   EXPECT_EQ(find_mark_option("message")->default_text, "");
 }

@@ -267,9 +267,9 @@ TEST(RealMeshes, EveryFileOfACollectionGetsARecord) {
   for (const Record& done : records) {
     const MarkedFile& record = done.file;
     EXPECT_NE(record.status, FileStatus::Failed) << record.error;
-    EXPECT_EQ(record.status == FileStatus::Marked, fs::exists(record.out)) << record.mesh;
-    EXPECT_EQ(record.status == FileStatus::Marked, record.error.empty());
-    if (record.status != FileStatus::Marked) {
+    EXPECT_EQ(record.is_marked(), fs::exists(record.out)) << record.mesh;
+    EXPECT_EQ(record.is_marked(), record.error.empty());
+    if (!record.is_marked()) {
       EXPECT_EQ(record.error.find('\n'), std::string::npos);
       EXPECT_EQ(record.error.rfind(record.mesh.string() + ": ", 0), 0U) << record.error;
     }

@@ -1,0 +1,274 @@
+#include "engine/marking/copies.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "engine/assignment/assignment.h"
+#include "engine/marking/mark.h"
+#include "engine/marking/settle.h"
+#include "engine/mesh/surface_diagonal.h"
+#include "engine/metric/deformation.h"
+#include "engine/metric/structural_distortion.h"
+#include "engine/scheme/registry.h"
+#include "engine/trace/fingerprint_reading.h"
+
+namespace triglyph {
+namespace {
+
+// The root mean square of the flux layer's moves by Strength, as for messages, percent of the
+// diagonal.
+constexpr std::array<double, 3> kFluxMovesOfCopies = {0.02, 0.07, 0.12};
+
+// The share of the user's limit of moves that is left to the flux layer where units follow.
+constexpr double kFluxShareOfCopies = 0.75;
+
+// Evidence, in bits, at which the usual encoding is taken: several times what is needed, since
+// units are lost in what meshes go through.
+constexpr double kPlenty = 8 * kTraceable;
+
+// Units for each that a part of a message would get: about as many as a message of eight bytes has
+// parts, so that copies change as much of a mesh as messages do.
+constexpr std::size_t kUnitsPerRedundancy = 12;
+
+// Colluders mix the bits of every symbol, so that all symbols are needed, and units to spare.
+constexpr std::size_t kUnitsPerSymbol = 8;
+
+// Units that are weighed against each other for each that is used.
+constexpr std::size_t kChoicesPerUnit = 4;
+
+// Names that stand for all: a unit's cost is the most over them.
+constexpr std::size_t kProbeNames = 3;
+
+// A mark that is seen is tried again with so many times fewer units.
+constexpr std::size_t kFewerUnitsOfCopies = 3;
+
+std::vector<Word> words_of_name(const FingerprintCode& code, FingerprintSeed seed,
+                                const WordFormat& format) {
+  std::vector<Word> words(std::size_t{1} << format.subscript_bits);
+  for (std::uint32_t symbol = 0; symbol < words.size(); ++symbol) {
+    words[symbol] = {symbol, code.symbol(seed, FingerprintLayer::Units, symbol, format.part_bits)};
+  }
+  return words;
+}
+
+// Returns the units that lie evenly among the valid ones, about `most` of them.
+std::vector<std::uint32_t> spread_over(std::span<const std::uint32_t> valid, std::size_t most) {
+  std::vector<std::uint32_t> chosen;
+  const std::size_t step = std::max<std::size_t>(1, valid.size() / std::max<std::size_t>(1, most));
+  for (std::size_t i = 0; i < valid.size(); i += step) chosen.push_back(valid[i]);
+  return chosen;
+}
+
+// Returns the encoding for meshes with few units, most of which would have to move farther than may
+// be seen for a marker and a subscript of so many bits in so wide cells. Of 13 meshes of 24 to
+// 1,098 points, 11 carry a fingerprint so, 3 in the usual encoding.
+Encoding of_small_meshes(Encoding encoding) {
+  constexpr int kBitsOfSmall = 4;
+  constexpr double kStepOfSmall = 0.5;  // in relation to the usual
+  encoding.format.marker_bits = std::min(encoding.format.marker_bits, kBitsOfSmall);
+  encoding.format.subscript_bits = std::min(encoding.format.subscript_bits, kBitsOfSmall);
+  const auto step = encoding.scheme_options.find("step");
+  if (step != encoding.scheme_options.end()) {
+    step->second = kStepOfSmall * std::get<double>(step->second);
+  }
+  return encoding;
+}
+
+}  // namespace
+
+FingerprintCode fingerprint_code(const Key& key, const MarkOptions& options) {
+  return FingerprintCode(key, static_cast<int>(options.collusion));
+}
+
+std::vector<Encoding> fingerprint_encodings(const MarkOptions& options) {
+  std::vector<Encoding> encodings;
+  if (options.units != LayerUse::No) {
+    Encoding units = options.encoding();
+    const bool is_spread = units.format.is_spread;
+    units.format = fingerprint_format(units.format, static_cast<int>(options.collusion));
+    encodings.push_back(units);
+    if (!is_spread) encodings.push_back(of_small_meshes(std::move(units)));
+  }
+  if (options.flux != LayerUse::No) encodings.push_back({std::string(kFluxScheme), {}, {}});
+  return encodings;
+}
+
+// The layer of units: which unit carries which symbol.
+struct CopyPlan::Units {
+  Units(const MarkTask& task, const Encoding& with)
+      : encoding(with),
+        words(task.key, with.format),
+        scheme(make_scheme(with.scheme, words, with.scheme_options, task.options.cost)),
+        bound(scheme->bind(task.surface)) {}
+  // Returns how many bits of evidence the placements can leave.
+  [[nodiscard]] double bits() const {
+    const std::size_t symbols = std::min<std::size_t>(placements.size(), words.capacity());
+    return static_cast<double>(symbols) * encoding.format.part_bits;
+  }
+
+  Encoding encoding;
+  WordCode words;
+  std::unique_ptr<Scheme> scheme;
+  std::unique_ptr<BoundScheme> bound;
+  Capacity capacity;
+  std::vector<Placement> placements;  // by ascending unit; a word's number is its symbol
+  double cost_max = 0;                // model units
+  double cost_sum = 0;
+  double farthest = 0;  // limit of moves, model units; 0: none
+};
+
+CopyPlan::CopyPlan(const MarkTask& task)
+    : task_(task),
+      code_(fingerprint_code(task.key, task.options)),
+      diagonal_(surface_diagonal(task.surface.mesh)) {
+  found_ = mark_before(task_);
+  if (found_) return;
+  if (task_.options.flux != LayerUse::No) canvas_.emplace(task_.surface);
+  if (task_.options.units != LayerUse::No) plan_units();
+}
+
+bool CopyPlan::is_too_coarse() const {
+  return units_ != nullptr && task_.output.step > kCoarseStep * units_->bound->cell_size();
+}
+
+void CopyPlan::plan_units() {
+  for (const Encoding& encoding : fingerprint_encodings(task_.options)) {
+    if (encoding.scheme == kFluxScheme) continue;
+    if (units_ != nullptr && units_->bits() >= kPlenty) break;
+    auto units = planned_units(encoding);
+    if (units_ == nullptr || units->bits() > units_->bits()) units_ = std::move(units);
+  }
+}
+
+std::shared_ptr<const CopyPlan::Units> CopyPlan::planned_units(const Encoding& encoding) const {
+  const MarkOptions& options = task_.options;
+  const WordFormat& format = encoding.format;
+  auto units = std::make_shared<Units>(task_, encoding);
+  std::vector<std::vector<Word>> probes;
+  for (std::uint64_t i = 0; i < kProbeNames; ++i) {
+    probes.push_back(words_of_name(code_, i, format));
+  }
+  units->capacity = find_capacity(task_.surface, *units->bound, probes[0], options);
+  const std::size_t symbols = probes[0].size();
+  std::size_t wanted =
+      options.collusion > 1 ? kUnitsPerSymbol * symbols : kUnitsPerRedundancy * options.redundancy;
+  if (wanted == 0) wanted = kUnitsPerSymbol * symbols;
+  const std::vector<std::uint32_t> chosen =
+      spread_over(units->capacity.valid, kChoicesPerUnit * wanted);
+  wanted = std::min(wanted, chosen.size());
+  // the farthest move that any part of a message is given
+  const double cap = options.max_move_percent.value_or(0);
+  units->farthest = (cap > 0 ? cap : kVisibleMove * kUsualMove) / 100 * diagonal_;
+  CostMatrix costs = units->bound->costs(units->capacity.units, chosen, probes[0]);
+  for (std::size_t probe = 1; probe < kProbeNames; ++probe) {
+    const CostMatrix others = units->bound->costs(units->capacity.units, chosen, probes[probe]);
+    for (std::size_t i = 0; i < costs.values.size(); ++i) {
+      costs.values[i] = std::max(costs.values[i], others.values[i]);
+    }
+  }
+  const bool costs_are_moves = options.cost == CostFunction::Displacement;
+  for (float& cost : costs.values) {
+    if (costs_are_moves && double{cost} > units->farthest) cost = kInfeasible;
+  }
+  std::vector<std::uint32_t> demand(symbols);
+  for (std::size_t i = 0; i < symbols; ++i) {
+    demand[i] = static_cast<std::uint32_t>((wanted + symbols - 1 - i) / symbols);
+  }
+  // fewer units than symbols: any symbol does
+  if (wanted < symbols) std::fill(demand.begin(), demand.end(), 1);
+  const Assignment assignment = assign_least_sum(costs, demand);
+  std::vector<std::uint32_t> rows;
+  for (std::uint32_t row = 0; row < chosen.size(); ++row) {
+    if (assignment.word_of_unit[row] != kNoWord) rows.push_back(row);
+  }
+  if (rows.size() > wanted) {
+    std::stable_sort(rows.begin(), rows.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return costs.at(a, assignment.word_of_unit[a]) < costs.at(b, assignment.word_of_unit[b]);
+    });
+    rows.resize(wanted);
+    std::sort(rows.begin(), rows.end());
+  }
+  for (const std::uint32_t row : rows) {
+    units->placements.push_back({chosen[row], assignment.word_of_unit[row]});
+  }
+  units->cost_max = assignment.max_cost;
+  units->cost_sum = assignment.sum_cost;
+  return units;
+}
+
+void CopyPlan::embed_units(FingerprintSeed seed, std::size_t one_in, Marking& marking) const {
+  const Units& units = *units_;
+  const Mesh before{marking.positions, task_.surface.mesh.triangles};
+  const Surface surface{before, task_.surface.halfedges};
+  const auto bound = units.bound->moved_to(surface);
+  std::vector<Placement> placements;
+  for (std::size_t i = 0; i < units.placements.size(); i += one_in) {
+    placements.push_back(units.placements[i]);
+  }
+  marking.format = units.encoding.format;
+  marking.words = words_of_name(code_, seed, marking.format);
+  settle(surface, *bound, units.capacity.units, placements,
+         {task_.output.round, units.farthest, task_.output.recut}, marking);
+  marking.candidates = static_cast<std::uint32_t>(units.capacity.units.size());
+  marking.units_valid = static_cast<std::uint32_t>(units.capacity.valid.size());
+  marking.units_bound = units.capacity.bound;
+  marking.units_assigned = static_cast<std::uint32_t>(placements.size());
+  marking.cost_max = units.cost_max;
+  marking.cost_sum = units.cost_sum;
+}
+
+Marking CopyPlan::copy_with(FingerprintSeed seed, std::size_t one_in) const {
+  const MarkOptions& options = task_.options;
+  Marking marking;
+  marking.is_fingerprint = true;
+  marking.status = MarkStatus::Marked;
+  marking.format = options.format;
+  marking.positions = task_.surface.mesh.positions;
+  if (canvas_) {
+    const FluxPhases word = phases_of_name(code_, seed);
+    const double share = options.units == LayerUse::No ? 1 : kFluxShareOfCopies;
+    const FluxBounds bounds{kFluxMovesOfCopies.at(static_cast<std::size_t>(options.strength)),
+                            share * options.max_move_percent.value_or(0),
+                            share * options.max_visibility};
+    FluxMarking flux =
+        mark_flux_word(task_.surface, *canvas_, word, task_.key, bounds, task_.output.round);
+    marking.flux_obstacle = flux.obstacle;
+    if (flux.obstacle == FluxObstacle::None) {
+      marking.flux = flux.mark;
+      marking.positions = std::move(flux.positions);
+    } else if (options.flux == LayerUse::Yes) {
+      marking.status = MarkStatus::NoFlux;
+      return marking;
+    }
+  }
+  if (units_ != nullptr) embed_units(seed, one_in, marking);
+  const double bits = static_cast<double>(marking.carriers.size()) * marking.format.part_bits +
+                      (marking.flux ? marking.flux->expected_evidence : 0);
+  if (bits < kTraceable) marking.status = MarkStatus::TooSmall;
+  return marking;
+}
+
+Marking CopyPlan::copy(std::span<const std::uint8_t> name) const {
+  if (found_) {
+    Marking marking;
+    marking.status = MarkStatus::AlreadyMarked;
+    marking.found = found_;
+    return marking;
+  }
+  const FingerprintSeed seed = code_.seed_of(name);
+  const double budget = task_.options.max_visibility;
+  for (std::size_t one_in = 1;; one_in *= kFewerUnitsOfCopies) {
+    Marking marking = copy_with(seed, one_in);
+    if (budget == 0) return marking;
+    if (marking.status != MarkStatus::Marked) {
+      if (one_in > 1) marking.status = MarkStatus::TooVisible;
+      return marking;
+    }
+    marking.visibility =
+        msdm2(task_.surface.mesh, {marking.positions, task_.surface.mesh.triangles}, kWindowsSeen);
+    if (marking.visibility <= budget) return marking;
+  }
+}
+
+}  // namespace triglyph

@@ -1,0 +1,27 @@
+// Who may have a copy: the names of a list or of a ledger.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "engine/marking/options.h"
+#include "engine/marking/trace_file.h"
+#include "manifests/ledger.h"
+#include "manifests/recipients.h"
+
+namespace triglyph {
+
+// Names, and the messages that other marks of the same owner carry.
+struct KnownCopies {
+  std::vector<Suspects> suspects;   // for each key
+  std::vector<Encoding> encodings;  // of marks that carry a message itself; none: there are none
+};
+
+// Returns all whom the ledger knows under each key and, under every key, the names of the list,
+// which were marked with any of these options. Either may be missing. Throws Error Malformed for
+// options in the ledger that are none. O(marks).
+[[nodiscard]] KnownCopies known_copies(const Ledger* ledger, const Recipients* list,
+                                       std::span<const MarkOptions> options,
+                                       std::span<const Key> keys);
+
+}  // namespace triglyph

@@ -1,0 +1,208 @@
+// Copies of one mesh for several names, and whose copy a file is.
+#include "engine/marking/copies.h"
+
+#include <cmath>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "engine/attack/attack.h"
+#include "engine/attack/stored_mesh.h"
+#include "engine/io/export_mesh.h"
+#include "engine/marking/mark.h"
+#include "engine/marking/mark_file.h"
+#include "engine/marking/trace_file.h"
+#include "engine/marking/verify_file.h"
+#include "engine/metric/deformation.h"
+#include "engine/metric/structural_distortion.h"
+#include "engine/samples/sample_shapes.h"
+#include "tests/flux/flux_shapes.h"
+#include "tests/support/temp_folder.h"
+
+namespace triglyph {
+namespace {
+
+Message bytes(const std::string& text) {
+  return {text.begin(), text.end()};
+}
+
+MarkRequest for_name(const std::string& name, OptionValues values = {}) {
+  values["recipient"] = name;
+  return resolve(values);
+}
+
+const Mesh& knobs() {
+  static const Mesh mesh = test::knobbly(60);
+  return mesh;
+}
+
+Marking copy_of(const Mesh& mesh, const MarkRequest& request, const Key& key = Key::trial()) {
+  const Halfedges halfedges = build_halfedges(mesh);
+  return mark({mesh, halfedges}, request.payload, key, request.options, as_float, 0);
+}
+
+// A folder with a mesh, its copies, and the names that may have one.
+class CopiesOfAFile : public testing::Test {
+ protected:
+  CopiesOfAFile() {
+    for (int i = 0; i < 200; ++i) names_.push_back(bytes("buyer " + std::to_string(i)));
+  }
+
+  std::filesystem::path save(const Mesh& mesh, const std::string& name) const {
+    const std::vector<char> file = export_mesh(mesh, {});
+    return folder_.write(name, std::string(file.begin(), file.end()));
+  }
+
+  [[nodiscard]] FileTrace trace(const std::filesystem::path& path, const MarkOptions& options,
+                                const Key& key = Key::trial()) const {
+    SuspectGroup group;
+    group.colluders = static_cast<int>(options.collusion);
+    group.encodings = fingerprint_encodings(options);
+    group.names = names_;
+    const std::vector<Suspects> suspects = {Suspects(key, {group})};
+    return trace_file(path, suspects, {});
+  }
+
+  // Expects the trace to name buyer `number` and nobody else.
+  void expect_named(const FileTrace& trace, int number) const {
+    ASSERT_GE(trace.names.size(), 2U);
+    EXPECT_EQ(trace.names[0].name, names_[static_cast<std::size_t>(number)]);
+    EXPECT_TRUE(TraceOptions{}.believes(trace.names[0])) << trace.names[0].false_alarm_log2;
+    EXPECT_FALSE(TraceOptions{}.believes(trace.names[1])) << trace.names[1].false_alarm_log2;
+  }
+
+  void expect_nobody(const FileTrace& trace) const {
+    for (const Traced& traced : trace.names) EXPECT_FALSE(TraceOptions{}.believes(traced));
+  }
+
+  test::TempFolder folder_;
+  std::vector<Message> names_;
+};
+
+TEST_F(CopiesOfAFile, AreTracedToTheirNamesWhateverIsDoneToThem) {
+  const auto mesh = save(knobs(), "in.obj");
+  const MarkRequest request = for_name("buyer 42");
+  const MarkedFile file = mark_file(mesh, folder_ / "out.obj", request, Key::trial());
+  ASSERT_EQ(file.status, FileStatus::Traceable) << file.error;
+  EXPECT_GE(file.evidence, 100);
+  ASSERT_TRUE(file.flux);
+  EXPECT_EQ(file.flux->payload.content, FluxContent::Fingerprint);
+  expect_named(trace(file.out, request.options), 42);
+  expect_nobody(trace(mesh, request.options));
+  expect_nobody(trace(file.out, request.options, Key::trial(3)));
+  const MeshFile written = MeshFile::open(file.out);
+  for (const char* attack : {"similarity+mirror", "crop:50", "noise:0.3", "simplify:50"}) {
+    const Mesh attacked = Attack::parsed(attack).applied(written.mesh(), 5);
+    expect_named(trace(save(attacked, "attacked.obj"), request.options), 42);
+  }
+  Verification verification = verify_file(file, Key::trial());
+  EXPECT_EQ(verification.verdict, FileVerdict::Intact) << verification.detail;
+  MarkedFile other = file;
+  other.request = for_name("buyer 43");
+  EXPECT_EQ(verify_file(other, Key::trial()).verdict, FileVerdict::Lost);
+  verification = verify_file(file, Key::trial(2));
+  EXPECT_EQ(verification.verdict, FileVerdict::Lost);
+}
+
+TEST_F(CopiesOfAFile, OfOneMeshDoNotDependOnEachOther) {
+  const auto mesh = save(knobs(), "in.obj");
+  const auto shared = std::make_shared<MeshOfCopies>();
+  const auto mark_copy = [&](const std::string& name, const std::string& out,
+                             const std::shared_ptr<const MeshOfCopies>& copies) {
+    FileMarking marking(mesh, folder_ / out, for_name(name), copies);
+    marking.load();
+    marking.mark(Key::trial());
+    marking.write();
+    marking.read_back(Key::trial());
+    marking.measure();
+    marking.publish();
+    EXPECT_EQ(marking.result().status, FileStatus::Traceable) << marking.result().error;
+    return test::read_all(folder_ / out);
+  };
+  const std::string ada = mark_copy("buyer 1", "a.obj", shared);
+  const std::string ben = mark_copy("buyer 2", "b.obj", shared);
+  EXPECT_NE(ada, ben);
+  EXPECT_EQ(mark_copy("buyer 2", "c.obj", nullptr), ben);
+  EXPECT_EQ(mark_copy("buyer 1", "d.obj", shared), ada);
+}
+
+TEST(Copies, DifferInTheirBitsAlone) {
+  const Halfedges halfedges = build_halfedges(knobs());
+  const MarkRequest request = for_name("any", {{"scheme", std::string("tsq")}});
+  const Rounding round = as_float;
+  const Recut recut;
+  const Key key = Key::trial();
+  const Surface surface{knobs(), halfedges};
+  const CopyPlan plan({surface, request.payload, key, request.options, {round, 0, recut}});
+  const Marking ada = plan.copy(bytes("Ada")), ben = plan.copy(bytes("Ben"));
+  ASSERT_EQ(ada.status, MarkStatus::Marked);
+  std::size_t shared = 0, same_bits = 0;
+  for (const Carrier& carrier : ada.carriers) {
+    if (std::find(ben.carriers.begin(), ben.carriers.end(), carrier) == ben.carriers.end())
+      continue;
+    ++shared;
+    if (ada.words[carrier.word] == ben.words[carrier.word]) ++same_bits;
+    EXPECT_EQ(ada.words[carrier.word].subscript, ben.words[carrier.word].subscript);
+  }
+  EXPECT_GE(10 * shared, 9 * ada.carriers.size());
+  EXPECT_LT(10 * same_bits, shared);
+}
+
+TEST_F(CopiesOfAFile, AreMadeOfMeshesThatAreTooSmallForAMessage) {
+  const auto mesh = save(make_sample_shape(SampleShape::Closed, 180, 4), "small.obj");
+  const MarkRequest whole =
+      resolve({{"message", std::string("buyer 7")}, {"carry", std::string("message")}});
+  EXPECT_EQ(mark_file(mesh, folder_ / "w.obj", whole, Key::trial()).status, FileStatus::TooSmall);
+  const MarkRequest any = resolve({{"message", std::string("buyer 7")}});
+  const MarkedFile file = mark_file(mesh, folder_ / "a.obj", any, Key::trial());
+  ASSERT_EQ(file.status, FileStatus::Traceable) << file.error;
+  expect_named(trace(file.out, any.options), 7);
+}
+
+TEST(Copies, AreRefusedWhereTheyWouldProveNothing) {
+  const Mesh tiny = make_sample_shape(SampleShape::Closed, 80, 1);
+  const Mesh few{{tiny.positions.begin(), tiny.positions.begin() + 12},
+                 {tiny.triangles.begin(), tiny.triangles.begin() + 4}};
+  Mesh valid = few;
+  std::erase_if(valid.triangles,
+                [](const Triangle& t) { return t[0] > 11 || t[1] > 11 || t[2] > 11; });
+  const Marking marking = copy_of(valid, for_name("Ada"));
+  EXPECT_EQ(marking.status, MarkStatus::TooSmall);
+}
+
+TEST(Copies, KeepWithinWhatMayBeSeen) {
+  const Mesh& mesh = knobs();
+  const Marking usual = copy_of(mesh, for_name("Ada"));
+  ASSERT_EQ(usual.status, MarkStatus::Marked);
+  const Marking light = copy_of(mesh, for_name("Ada", {{"strength", std::string("light")}}));
+  ASSERT_EQ(light.status, MarkStatus::Marked);
+  EXPECT_LE(light.visibility, 0.05);
+  EXPECT_LT(msdm2(mesh, {light.positions, mesh.triangles}, 20000),
+            msdm2(mesh, {usual.positions, mesh.triangles}, 20000));
+}
+
+TEST(Copies, AreNotMadeOfAMeshThatCarriesAMessageAlready) {
+  const MarkRequest first = resolve({{"message", std::string("owner")}});
+  const Marking marked = copy_of(knobs(), first);
+  ASSERT_EQ(marked.status, MarkStatus::Marked);
+  const Mesh mesh{marked.positions, knobs().triangles};
+  EXPECT_EQ(copy_of(mesh, for_name("Ada")).status, MarkStatus::AlreadyMarked);
+  EXPECT_EQ(copy_of(mesh, for_name("Ada", {{"remark", true}})).status, MarkStatus::Marked);
+}
+
+TEST(Copies, TakeOptionsThatFitTogether) {
+  EXPECT_THROW((void)resolve({{"message", std::string("a")}, {"collusion", std::int64_t{3}}}),
+               Error);
+  EXPECT_THROW((void)for_name("a", {{"part_bits", std::int64_t{16}}}), Error);
+  EXPECT_THROW((void)for_name(""), Error);
+  EXPECT_THROW((void)for_name(std::string(257, 'a')), Error);
+  EXPECT_EQ(for_name("a").options.carry, Carry::Fingerprint);
+  EXPECT_EQ(resolve({{"message", std::string("a")}}).options.carry, Carry::Any);
+  EXPECT_EQ(resolve({{"message", std::string("a")}, {"scheme", std::string("tsq")}}).options.carry,
+            Carry::Whole);
+  const MarkOptions resistant = for_name("a", {{"collusion", std::int64_t{3}}}).options;
+  EXPECT_EQ(fingerprint_encodings(resistant)[0].format.part_bits, 4);
+}
+
+}  // namespace
+}  // namespace triglyph
