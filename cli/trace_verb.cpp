@@ -23,7 +23,8 @@ namespace fs = std::filesystem;
 
 struct TraceArguments {
   std::vector<std::string> inputs;
-  std::filesystem::path recipients;
+  fs::path recipients;
+  std::vector<fs::path> originals;
   double false_alarm = 1e-9;
   std::size_t most = 5;
   bool json = false;
@@ -222,7 +223,7 @@ int run_trace(const TraceArguments& arguments) {
   return arguments.run.supervised([&](const WorkOrder& order) {
     std::optional<Ledger> ledger;
     if (!path.empty()) ledger.emplace(path);
-    const KnownCopies known = known_copies(ledger ? &*ledger : nullptr, list.get(), options, keys);
+    const KnownCopies known = known_copies(ledger ? &*ledger : nullptr, list.get(), options, keys, arguments.originals);
     std::size_t names = 0;
     for (const Suspects& suspects : known.suspects) names += suspects.count();
     if (names == 0 && known.encodings.empty()) {
@@ -279,6 +280,11 @@ void add_trace_verb(CLI::App& app, Action& action) {
   verb->add_option("--recipients", arguments->recipients,
                    "Look for the names of this list, also without a ledger")
       ->type_name("FILE");
+  verb->add_option("--original", arguments->originals,
+                   "Compare the suspects with this mesh, of which they may be copies or pieces; may "
+                   "be given several times. Meshes whose marks cannot be read without theirs are "
+                   "found by the ledger")
+      ->type_name("MESH");
   verb->add_option("--false-alarm", arguments->false_alarm,
                    "Name only whom chance would name with a lower probability, whatever the number "
                    "of names, keys and files")

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 constexpr int kApplicationId = 0x54474c59;
 
 // Milliseconds to wait for another process that writes.
-constexpr int kBusyTimeout = 30000;
+constexpr int kBusyTimeout = 20000;
 
 // Step i leads from schema i to schema i + 1. Steps are never changed, only added.
 constexpr std::array<const char*, 3> kSteps = {
@@ -101,12 +101,16 @@ struct Ledger::Database {
   // Prepared statements by their text: preparing one costs as much as running it.
   mutable std::unordered_map<std::string, sqlite3_stmt*> statements;
 
+  // Why no lock can be had. Each attempt takes SQLite ten seconds, so that there is one.
+  mutable std::string no_locks;
+
   ~Database() {
     for (const auto& [sql, statement] : statements) sqlite3_finalize(statement);
     sqlite3_close_v2(handle);
   }
 
   [[nodiscard]] sqlite3_stmt* prepared(const std::string& sql) const {
+    if (!no_locks.empty()) throw Error(ErrorCode::Unwritable, path, "", no_locks);
     sqlite3_stmt*& statement = statements[sql];
     if (statement == nullptr &&
         sqlite3_prepare_v3(handle, sql.c_str(), -1, SQLITE_PREPARE_PERSISTENT, &statement,
@@ -122,8 +126,9 @@ struct Ledger::Database {
     std::string reason = sqlite3_errmsg(handle);
     // it may quote the file, which may be anything
     for (char& c : reason) c = static_cast<unsigned char>(c) < 32 || c == 127 ? ' ' : c;
-    throw Error(is_other ? ErrorCode::Malformed : ErrorCode::Unwritable, path, "",
-                "the ledger: " + reason);
+    reason = "the ledger: " + reason;
+    if (code == SQLITE_PROTOCOL) no_locks = reason;
+    throw Error(is_other ? ErrorCode::Malformed : ErrorCode::Unwritable, path, "", reason);
   }
 
   void execute(const char* sql) const {

@@ -38,6 +38,9 @@ struct LedgerItem {
   std::uint64_t place = 0;  // in that run, from 0
 };
 
+// The scheme of marks that displace every point, in the ledger: they are read with their mesh.
+inline constexpr std::string_view kPointsScheme = "points";
+
 // A mark that was issued. Never changed and never deleted.
 struct LedgerMark {
   std::int64_t number = 0;  // assigned by the ledger, from 1

@@ -1,8 +1,13 @@
 #include "manifests/suspects_of.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
+#include <memory>
+#include <optional>
 #include <set>
+#include <string>
+#include <utility>
 
 #include "engine/base/error.h"
 #include "engine/marking/copies.h"
@@ -38,12 +43,16 @@ void add(std::vector<Encoding>& encodings, std::vector<Encoding> others) {
   }
 }
 
-// The names of one key by the colluders that their fingerprints resist.
+// Names that are looked for together.
 struct Group {
   std::set<std::string> names;
   std::vector<Encoding> encodings;
+  std::optional<Strength> strength;  // of displaced points
 };
-using Groups = std::map<int, Group>;
+
+// The groups of one key, by the colluders that their fingerprints resist and by the original
+// without which these cannot be read.
+using Groups = std::map<std::pair<int, std::string>, Group>;
 
 // Gathers the marks of a ledger.
 class MarksInLedger {
@@ -52,10 +61,12 @@ class MarksInLedger {
     if (mark.message_hex.empty()) return;  // fill
     const MarkOptions& options = options_of(mark);
     const auto colluders = static_cast<int>(options.collusion);
+    const bool needs_original = mark.scheme == kPointsScheme;
     if (options.carry != Carry::Whole) {
-      Group& group = groups_[mark.key][colluders];
+      Group& group = groups_[mark.key][{colluders, needs_original ? mark.mesh : ""}];
       group.names.insert(bytes_of(mark.message_hex));
-      if (is_new_) add(group.encodings, fingerprint_encodings(options));
+      if (needs_original) group.strength = options.strength;
+      if (is_new_ && !needs_original) add(group.encodings, fingerprint_encodings(options));
     }
     if (options.carry != Carry::Fingerprint && is_new_) {
       if (options.units != LayerUse::No) add(encodings_, {options.encoding()});
@@ -70,7 +81,8 @@ class MarksInLedger {
   // Marks have the same options by the thousand.
   const MarkOptions& options_of(const LedgerMark& mark) {
     const auto [known, is_new] = options_.try_emplace({mark.key, mark.scheme, mark.options});
-    if (is_new) known->second = options_in(mark.options, mark.scheme);
+    const bool has_layers = mark.scheme != kPointsScheme;
+    if (is_new) known->second = options_in(mark.options, has_layers ? mark.scheme : "auto");
     is_new_ = is_new;
     return known->second;
   }
@@ -84,27 +96,38 @@ class MarksInLedger {
 }  // namespace
 
 KnownCopies known_copies(const Ledger* ledger, const Recipients* list,
-                         std::span<const MarkOptions> options, std::span<const Key> keys) {
+                         std::span<const MarkOptions> options, std::span<const Key> keys,
+                         std::span<const std::filesystem::path> originals) {
   MarksInLedger marks;
   if (ledger != nullptr) {
     ledger->for_each_mark([&](const LedgerMark& mark) { marks.add_mark(mark); });
+  }
+  std::vector<std::shared_ptr<const OriginalMesh>> named;
+  for (const std::filesystem::path& path : originals) {
+    named.push_back(std::make_shared<OriginalMesh>(path, Strength::Normal));
+    (void)named.back()->mesh();  // what the user names must be there
   }
   KnownCopies known;
   for (const Key& key : keys) {
     Groups groups = marks.take(key);
     if (list != nullptr) {
       for (const MarkOptions& each : options) {
-        Group& group = groups[static_cast<int>(each.collusion)];
+        Group& group = groups[{static_cast<int>(each.collusion), ""}];
         for (const Recipient& recipient : *list) group.names.insert(recipient.name);
         add(group.encodings, fingerprint_encodings(each));
       }
     }
     std::vector<SuspectGroup> listed;
-    for (auto& [colluders, group] : groups) {
+    for (auto& [what, group] : groups) {
+      const auto& [colluders, original] = what;
       SuspectGroup& one = listed.emplace_back();
       one.colluders = colluders;
       one.encodings = std::move(group.encodings);
       for (const std::string& name : group.names) one.names.emplace_back(name.begin(), name.end());
+      one.originals = named;
+      if (group.strength) {
+        one.originals = {std::make_shared<OriginalMesh>(original, *group.strength)};
+      }
     }
     known.suspects.emplace_back(key, std::move(listed));
   }

@@ -1,6 +1,7 @@
 // Who may have a copy: the names of a list or of a ledger.
 #pragma once
 
+#include <filesystem>
 #include <span>
 #include <vector>
 
@@ -18,10 +19,13 @@ struct KnownCopies {
 };
 
 // Returns all whom the ledger knows under each key and, under every key, the names of the list,
-// which were marked with any of these options. Either may be missing. Throws Error Malformed for
-// options in the ledger that are none. O(marks).
+// which were marked with any of these options. Either may be missing. `originals` are meshes of
+// which the suspects may be copies, besides those whose marks cannot be read without, which the
+// ledger names. Throws Error Malformed for options in the ledger that are none, and as
+// MeshFile::open() does for an original that is named. O(marks).
 [[nodiscard]] KnownCopies known_copies(const Ledger* ledger, const Recipients* list,
                                        std::span<const MarkOptions> options,
-                                       std::span<const Key> keys);
+                                       std::span<const Key> keys,
+                                       std::span<const std::filesystem::path> originals);
 
 }  // namespace triglyph

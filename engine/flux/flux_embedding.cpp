@@ -62,6 +62,20 @@ constexpr int kUsualBits = 9;
 constexpr double kLittleNoise = 0.001;
 constexpr int kLittleBits = 11;
 
+// Points of which a part is read: more tell hardly more.
+constexpr std::size_t kMostSeen = 8000;
+
+// Turns, shifts and the scale.
+constexpr Eigen::Index kSimilarities = 7;
+
+// Offsets that are read are wrong by about this share of the diagonal, and neighbouring ones alike,
+// so that this many of them tell as much as one.
+constexpr double kUsualOffset = 1e-4;
+constexpr double kNeighbours = 10;
+
+// Marks change normalised functionals by about this much.
+constexpr double kUsualChange = 0.005;
+
 std::vector<Vec3> outward_directions(const Mesh& mesh) {
   std::vector<Vec3> normals(mesh.positions.size());
   for (const Triangle& t : mesh.triangles) {
@@ -333,6 +347,66 @@ std::optional<FluxCanvas::Written> FluxCanvas::write(const FluxPhases& phases, c
   }
   if (written && written->residual > kMostResidual) return std::nullopt;
   return written;
+}
+
+// Least squares of the offsets along the normals, as sums of the fields of the functionals and of
+// a small similarity by which the part was brought to its place wrongly.
+FluxCanvas::Estimate FluxCanvas::estimated(std::span<const std::optional<Vec3>> places) const {
+  const std::vector<Vec3>& positions = surface_.mesh.positions;
+  std::vector<std::size_t> seen;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (places[i]) seen.push_back(i);
+  }
+  const std::size_t stride = std::max<std::size_t>(1, seen.size() / kMostSeen);
+  std::vector<std::size_t> points;
+  for (std::size_t i = 0; i < seen.size(); i += stride) points.push_back(seen[i]);
+  const auto rows = static_cast<Eigen::Index>(points.size());
+  const auto count = static_cast<Eigen::Index>(used_.size());
+  Eigen::MatrixXd fields(rows, count + kSimilarities);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    stop_point();
+    const Eigen::VectorXd unknowns = basis_->responses.col(i);
+    const std::vector<double> field =
+        plate_->field({unknowns.data(), static_cast<std::size_t>(unknowns.size())});
+    for (Eigen::Index row = 0; row < rows; ++row) {
+      fields(row, i) = field[points[static_cast<std::size_t>(row)]];
+    }
+  }
+  Eigen::VectorXd offsets(rows);
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    const std::size_t point = points[static_cast<std::size_t>(row)];
+    const Vec3 arm = frame_.relative(positions[point]);
+    const Vec3 turn = cross(arm, directions_[point]);
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      fields(row, count + axis) = frame_.scale * turn[static_cast<std::size_t>(axis)];
+      fields(row, count + 3 + axis) =
+          frame_.scale * directions_[point][static_cast<std::size_t>(axis)];
+    }
+    fields(row, count + 6) = frame_.scale * dot(arm, directions_[point]);
+    offsets[row] = dot(*places[point] - positions[point], directions_[point]);
+  }
+  Eigen::MatrixXd squares = fields.transpose() * fields;
+  // what is known in advance: changes are small
+  const double noise = kUsualOffset * diagonal_;
+  const double prior = noise * noise / (kUsualChange * kUsualChange);
+  for (Eigen::Index i = 0; i < count + kSimilarities; ++i) squares(i, i) += prior;
+  const Eigen::MatrixXd inverse = squares.ldlt().solve(
+      Eigen::MatrixXd::Identity(count + kSimilarities, count + kSimilarities));
+  const Eigen::VectorXd changes = inverse * (fields.transpose() * offsets);
+  const double misfit =
+      rows > 0 ? (offsets - fields * changes).squaredNorm() / static_cast<double>(rows) : 0;
+  Estimate result{before_, {}};
+  result.doubts.fill(std::numeric_limits<double>::infinity());
+  for (Measured& m : result.measurement) m.used = 0;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const std::uint32_t functional = used_[static_cast<std::size_t>(i)];
+    result.measurement[functional].used = 1;
+    result.measurement[functional].other_weight = 0;
+    result.measurement[functional].value = before_[functional].value + changes[i];
+    result.doubts[functional] =
+        std::sqrt(std::max(0.0, inverse(i, i)) * kNeighbours * (misfit + noise * noise));
+  }
+  return result;
 }
 
 double FluxCanvas::squared_move(std::span<const Vec3> positions) const {

@@ -63,6 +63,17 @@ class FluxCanvas {
   [[nodiscard]] std::optional<Written> write(const FluxPhases& phases, const Dither& dither,
                                              const FluxLimits& limits) const;
 
+  // Returns the functionals that a mark brought about, of a surface of which only a part is left:
+  // `places[i]` is where point i is now, nothing where it is gone. The mark is the smoothest
+  // displacement that changes the functionals as it does, so that what is left of it tells of the
+  // whole. `doubts` are standard deviations, normalised as the values; infinite for functionals
+  // that are not used. May be called from several threads at a time. Precondition: no obstacle.
+  struct Estimate {
+    Measurement measurement;
+    FluxVector doubts{};
+  };
+  [[nodiscard]] Estimate estimated(std::span<const std::optional<Vec3>> places) const;
+
   // Returns what a mark of this step is expected to prove.
   [[nodiscard]] FluxExpectation expected_evidence(std::size_t step) const;
   // Returns the largest step within the limits on average over keys; nothing if there is none.

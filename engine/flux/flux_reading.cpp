@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -179,6 +180,17 @@ double promise_of_pilots(const Measurement& measurement, const AxesGuess& axes,
   return squares > 0 ? sum / std::sqrt(squares) : 0;
 }
 
+// Returns the binary logarithm of the likelihood of phases by the pilots.
+double weight_of_pilots(const SoftPhases& phases, double sharpness) {
+  const double log_mean = log_bessel(sharpness);
+  double nats = 0;
+  for (std::size_t i = 0; i < kFunctionals; ++i) {
+    if (!is_pilot(i) || phases[i].used == 0) continue;
+    nats += phases[i].log_likelihood(0, sharpness, log_mean);
+  }
+  return nats / M_LN2;
+}
+
 // The attempts that are decoded, of all hypotheses: a mark that can be read is among the first few.
 constexpr std::size_t kDecoded = 256;
 
@@ -212,12 +224,8 @@ class FluxReader {
       const double prior = -attempt.guess->price - attempt.axes->price -
                            std::log2(static_cast<double>(kSteps * kSharpness.size()));
       for (const double sharpness : kSharpness) {
-        double nats = 0;
-        for (std::size_t i = 0; i < kFunctionals; ++i) {
-          if (!is_pilot(i) || phases[i].used == 0) continue;
-          nats += phases[i].log_likelihood(0, sharpness, log_bessel(sharpness));
-        }
-        readings.push_back({phases, sharpness, prior + nats / M_LN2, attempt.guess->undone});
+        readings.push_back({phases, sharpness, prior + weight_of_pilots(phases, sharpness),
+                            attempt.guess->undone});
       }
     }
   }
@@ -336,6 +344,9 @@ void for_guesses(const Surface& surface, const TryAll& try_all) {
 // likelier than that there is no mark, all are kept.
 constexpr double kNegligibleWeight = 24;
 
+// Steps by which a functional may be doubted and still tell something.
+constexpr double kMostDoubt = 0.15;
+
 // Names the pilots among the uses of random numbers.
 constexpr std::uint64_t kPilots = 0x70696c6f74;  // "pilot"
 constexpr std::uint64_t kOneInPilots = 4;
@@ -354,6 +365,30 @@ std::optional<FluxFound> read_flux(const Surface& surface, const Key& key, FluxE
     return found.has_value() || effort == FluxEffort::AsItIs;
   });
   return found;
+}
+
+// The axes are those of the original, so that steps and sharpnesses are the only hypotheses.
+std::vector<FluxSoftReading> read_flux_of_estimate(const FluxCanvas::Estimate& estimate,
+                                                   const Key& key) {
+  const Dither dither(key);
+  std::array<std::uint8_t, kFunctionals> own{};
+  std::iota(own.begin(), own.end(), std::uint8_t{0});
+  std::vector<FluxSoftReading> readings;
+  for (std::size_t step = 0; step < kSteps; ++step) {
+    Measurement measurement = estimate.measurement;
+    for (std::size_t i = 0; i < kFunctionals; ++i) {
+      if (estimate.doubts[i] > kMostDoubt * step_size(step)) measurement[i].used = 0;
+    }
+    const SoftPhases phases = soft_phases(measurement, own, dither, step_size(step));
+    for (const double sharpness : kSharpness) {
+      FluxSoftReading& reading = readings.emplace_back();
+      reading.phases = phases;
+      reading.sharpness = sharpness;
+      reading.weight = weight_of_pilots(phases, sharpness) -
+                       std::log2(static_cast<double>(kSteps * kSharpness.size()));
+    }
+  }
+  return readings;
 }
 
 std::vector<FluxSoftReading> read_flux_softly(const Surface& surface, const Key& key,

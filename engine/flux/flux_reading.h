@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "engine/flux/block_code.h"
+#include "engine/flux/flux_embedding.h"
 #include "engine/flux/lattice.h"
 #include "engine/mesh/surface.h"
 
@@ -58,6 +60,11 @@ struct FluxSoftReading {
 // most. O(triangles), times about 80 unless the surface is taken as it is.
 [[nodiscard]] std::vector<FluxSoftReading> read_flux_softly(const Surface& surface, const Key& key,
                                                             FluxEffort effort);
+
+// Likewise, of functionals that were estimated; those that are doubted by too much of a step tell
+// nothing.
+[[nodiscard]] std::vector<FluxSoftReading> read_flux_of_estimate(
+    const FluxCanvas::Estimate& estimate, const Key& key);
 
 // What speaks for a word that is known.
 struct FluxEvidence {

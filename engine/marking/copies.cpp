@@ -7,10 +7,12 @@
 #include "engine/assignment/assignment.h"
 #include "engine/marking/mark.h"
 #include "engine/marking/settle.h"
+#include "engine/marking/way_out.h"
 #include "engine/mesh/surface_diagonal.h"
 #include "engine/metric/deformation.h"
 #include "engine/metric/structural_distortion.h"
 #include "engine/scheme/registry.h"
+#include "engine/trace/displaced_points.h"
 #include "engine/trace/fingerprint_reading.h"
 
 namespace triglyph {
@@ -19,6 +21,16 @@ namespace {
 // The root mean square of the flux layer's moves by Strength, as for messages, percent of the
 // diagonal.
 constexpr std::array<double, 3> kFluxMovesOfCopies = {0.02, 0.07, 0.12};
+
+// The scheme of marks that take what layer the mesh can carry.
+constexpr std::string_view kAnyLayer = "auto";
+
+// Evidence, in bits, that units must be able to leave, or else points are displaced: units are lost
+// when they are rounded, and what is left must be enough.
+constexpr double kPointsBelow = 2 * kTraceable;
+
+// Numbers that are so far apart, in relation to the farthest displacement, blur it.
+constexpr double kCoarseDisplacement = 1.0 / 16;
 
 // The share of the user's limit of moves that is left to the flux layer where units follow.
 constexpr double kFluxShareOfCopies = 0.75;
@@ -126,9 +138,20 @@ CopyPlan::CopyPlan(const MarkTask& task)
   if (found_) return;
   if (task_.options.flux != LayerUse::No) canvas_.emplace(task_.surface);
   if (task_.options.units != LayerUse::No) plan_units();
+  const bool is_auto = task_.options.scheme_name() == kAnyLayer;
+  if (!is_auto || task_.surface.mesh.triangles.empty() || units_->bits() >= kPlenty) return;
+  // any name tells about what others will leave
+  displaces_points_ = copy_with(0, 1).expected_bits < kPointsBelow;
+}
+
+double farthest_of_points(Strength strength, double diagonal) {
+  return kFluxMovesOfCopies.at(static_cast<std::size_t>(strength)) / 100 * diagonal;
 }
 
 bool CopyPlan::is_too_coarse() const {
+  if (displaces_points_) {
+    return task_.output.step > kCoarseDisplacement * farthest_of_points(task_.options.strength, diagonal_);
+  }
   return units_ != nullptr && task_.output.step > kCoarseStep * units_->bound->cell_size();
 }
 
@@ -243,9 +266,51 @@ Marking CopyPlan::copy_with(FingerprintSeed seed, std::size_t one_in) const {
     }
   }
   if (units_ != nullptr) embed_units(seed, one_in, marking);
-  const double bits = static_cast<double>(marking.carriers.size()) * marking.format.part_bits +
-                      (marking.flux ? marking.flux->expected_evidence : 0);
-  if (bits < kTraceable) marking.status = MarkStatus::TooSmall;
+  marking.expected_bits =
+      static_cast<double>(marking.carriers.size()) * marking.format.part_bits +
+      (marking.flux ? marking.flux->expected_evidence : 0);
+  if (marking.expected_bits < kTraceable) marking.status = MarkStatus::TooSmall;
+  return marking;
+}
+
+Marking CopyPlan::displaced_copy(FingerprintSeed seed) const {
+  const Mesh& mesh = task_.surface.mesh;
+  const MarkOptions& options = task_.options;
+  Marking marking;
+  marking.is_fingerprint = true;
+  marking.needs_original = true;
+  marking.format = options.format;
+  const double farthest = farthest_of_points(options.strength, diagonal_);
+  marking.positions = displaced(mesh.positions, farthest, code_, seed);
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    if (marking.positions[i] != mesh.positions[i]) {
+      marking.positions[i] = task_.output.round(marking.positions[i]);
+    }
+  }
+  for (;;) {
+    const auto flipped = flipped_triangles(mesh.triangles, mesh.positions, marking.positions);
+    if (flipped.empty()) break;
+    for (const std::uint32_t triangle : flipped) {
+      for (const std::uint32_t point : mesh.triangles[triangle]) {
+        marking.positions[point] = mesh.positions[point];
+      }
+    }
+  }
+  std::size_t moved = 0;
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    if (marking.positions[i] != mesh.positions[i]) ++moved;
+  }
+  marking.expected_bits = static_cast<double>(3 * moved) * kPointBits;
+  const double most = options.max_move_percent.value_or(0) / 100 * diagonal_;
+  if (is_too_coarse()) {
+    marking.status = MarkStatus::TooCoarse;
+  } else if (marking.expected_bits < kTraceable) {
+    marking.status = MarkStatus::TooSmall;
+  } else if (most > 0 && std::sqrt(3.0) * farthest > most) {
+    marking.status = MarkStatus::TooVisible;
+    marking.way_out.move_needed_percent = 100 * std::sqrt(3.0) * farthest / diagonal_;
+    marking.way_out.max_move_percent = rounded_up(marking.way_out.move_needed_percent);
+  }
   return marking;
 }
 
@@ -257,6 +322,7 @@ Marking CopyPlan::copy(std::span<const std::uint8_t> name) const {
     return marking;
   }
   const FingerprintSeed seed = code_.seed_of(name);
+  if (displaces_points_) return displaced_copy(seed);
   const double budget = task_.options.max_visibility;
   for (std::size_t one_in = 1;; one_in *= kFewerUnitsOfCopies) {
     Marking marking = copy_with(seed, one_in);

@@ -20,6 +20,10 @@ namespace triglyph {
 // thousand with a false alarm of 2^-30, about 10^-9.
 inline constexpr double kTraceable = 40;
 
+// Returns the farthest that points are displaced along each axis where they carry a fingerprint,
+// model units, for a surface with this diagonal.
+[[nodiscard]] double farthest_of_points(Strength strength, double diagonal);
+
 // Returns the code of the fingerprints that marking makes with these options.
 [[nodiscard]] FingerprintCode fingerprint_code(const Key& key, const MarkOptions& options);
 
@@ -36,17 +40,22 @@ class CopyPlan {
 
   // Returns the mark of a name: a function of mesh, key, options and name, whatever other copies
   // were made. May be called from several threads at a time. TooSmall where the layers have too
-  // few bits, TooVisible where the mark would exceed MarkOptions::max_visibility, NoFlux;
+  // few bits, TooCoarse where the output's numbers are, TooVisible where the mark would exceed MarkOptions::max_visibility, NoFlux;
   // AlreadyMarked unless MarkOptions::remark is set.
   [[nodiscard]] Marking copy(std::span<const std::uint8_t> name) const;
 
-  // Says whether the output's numbers are too far apart for the cells of units.
+  [[nodiscard]] bool displaces_points() const { return displaces_points_; }
+
+  // Says whether the output's numbers are too far apart for the cells of units, or for
+  // displacements of points.
   [[nodiscard]] bool is_too_coarse() const;
 
  private:
   struct Units;
 
   void plan_units();
+  // Displaces all points, for meshes with few of them.
+  [[nodiscard]] Marking displaced_copy(FingerprintSeed seed) const;
   // Returns the layer of units with one of the encodings.
   [[nodiscard]] std::shared_ptr<const Units> planned_units(const Encoding& encoding) const;
   // Embeds the name's symbols in every `one_in`-th unit of the plan.
@@ -59,6 +68,7 @@ class CopyPlan {
   std::optional<FoundMessage> found_;
   std::optional<FluxCanvas> canvas_;
   std::shared_ptr<const Units> units_;  // null: no layer of units
+  bool displaces_points_ = false;       // no other layer has bits enough
 };
 
 }  // namespace triglyph

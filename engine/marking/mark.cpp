@@ -240,7 +240,9 @@ Marking mark(const Surface& surface, const Payload& payload, const Key& key,
       marking.status != MarkStatus::Marked && marking.status != MarkStatus::AlreadyMarked;
   if (!has_choice || !is_refused) return marking;
   Marking copy = CopyPlan(task).copy(*message);
-  return copy.status == MarkStatus::Marked ? copy : mark_message(task, true);
+  const bool is_copy_of_use =
+      copy.status == MarkStatus::Marked || copy.status == MarkStatus::TooCoarse;
+  return is_copy_of_use ? copy : mark_message(task, true);
 }
 
 }  // namespace triglyph

@@ -20,6 +20,7 @@
 #include "engine/metric/deformation.h"
 #include "engine/metric/hausdorff.h"
 #include "engine/scheme/registry.h"
+#include "engine/trace/displaced_points.h"
 #include "engine/trace/fingerprint_reading.h"
 
 namespace triglyph {
@@ -50,6 +51,9 @@ std::optional<FileStatus> refused_status(MarkStatus status) {
   }
   return FileStatus::Failed;
 }
+
+// Digits more than a file's that moved coordinates get without being asked for.
+constexpr int kMostDigits = 8;
 
 // What a surface gives back of the mark.
 struct ReadBack {
@@ -94,6 +98,25 @@ Encoding MarkedFile::encoding() const {
   Encoding encoding = request.options.encoding();
   encoding.format = format;
   return encoding;
+}
+
+double fingerprint_evidence(const MarkedFile& marked, const Surface& surface,
+                            const std::optional<Mesh>& original, const Key& key,
+                            FluxEffort effort) {
+  MarkOptions options = marked.request.options;
+  const FingerprintCode code = fingerprint_code(key, options);
+  const FingerprintSeed seed = code.seed_of(marked.request.message());
+  std::vector<ScoreTable> tables;
+  if (!marked.needs_original) {
+    if (!marked.flux) options.flux = LayerUse::No;
+    tables = read_fingerprints(surface, key, code, fingerprint_encodings(options), effort);
+  } else if (original && original->positions.size() == surface.mesh.positions.size()) {
+    const std::vector<Vec3>& positions = surface.mesh.positions;
+    const std::vector<std::optional<Vec3>> seen(positions.begin(), positions.end());
+    const double farthest = farthest_of_points(options.strength, surface_diagonal(*original));
+    tables = score_points(original->positions, seen, farthest, 1);
+  }
+  return evidence_of(tables, code, seed).bits;
 }
 
 struct FileMarking::Work {
@@ -190,6 +213,7 @@ void FileMarking::describe(const Marking& marking) {
     result_.request.options.scheme_options = marking.scheme_options;
   }
   result_.flux = marking.flux;
+  result_.needs_original = marking.needs_original;
   result_.parts = static_cast<std::uint32_t>(marking.words.size());
   result_.candidates = marking.candidates;
   result_.units_valid = marking.units_valid;
@@ -277,13 +301,15 @@ void FileMarking::mark(const Key& key) noexcept {
     file.set_more_digits(options.digits.value_or(0));
     result_.digits = file.is_decimal() ? options.digits.value_or(0) : 0;
     mark_as(options, key);
-    const bool lacks_digits = result_.status == FileStatus::TooCoarse && file.is_decimal();
-    if (!lacks_digits || options.digits) return;
-    result_.status = FileStatus::Marked;
-    result_.error.clear();
-    result_.digits = 1;
-    file.set_more_digits(result_.digits);
-    mark_as(options, key);
+    // a message gets one digit more, points that are displaced as many as it takes
+    while (result_.status == FileStatus::TooCoarse && file.is_decimal() && !options.digits &&
+           result_.digits < (work_->marking.needs_original ? kMostDigits : 1)) {
+      result_.status = FileStatus::Marked;
+      result_.error.clear();
+      ++result_.digits;
+      file.set_more_digits(result_.digits);
+      mark_as(options, key);
+    }
   });
 }
 
@@ -327,14 +353,11 @@ void FileMarking::read_back(const Key& key) noexcept {
 bool FileMarking::reads_fingerprint(const Key& key) {
   const Marking& marking = work_->marking;
   const Readable written(work_->output->temporary_path());
-  MarkOptions options = result_.request.options;
-  if (!marking.flux) options.flux = LayerUse::No;
-  const FingerprintCode code = fingerprint_code(key, options);
-  const std::vector<ScoreTable> tables = read_fingerprints(
-      written.surface(), key, code, fingerprint_encodings(options), FluxEffort::AsItIs);
-  result_.evidence = evidence_of(tables, code, code.seed_of(result_.request.message())).bits;
+  result_.evidence =
+      fingerprint_evidence(result_, written.surface(), work_->mesh->file.mesh(), key,
+                           FluxEffort::AsItIs);
   result_.units_embedded = static_cast<std::uint32_t>(marking.carriers.size());
-  if (options.detail) result_.units = marking.carriers;
+  if (result_.request.options.detail) result_.units = marking.carriers;
   if (result_.evidence >= kTraceable) return true;
   end(FileStatus::TooSmall, too_little_evidence(result_.evidence, kTraceable));
   return false;

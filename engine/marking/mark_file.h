@@ -79,6 +79,7 @@ struct MarkedFile {
   std::uint32_t units_embedded = 0;  // whose word was read back from the output
   std::optional<FluxMark> flux;      // the flux layer
   double evidence = 0;               // of a fingerprint in the output, bits: see evidence_of()
+  bool needs_original = false;       // to find the fingerprint
   int digits = 0;                    // more than the file's that moved coordinates have
   double cost_max = 0;               // of the assignment, model units
   double cost_sum = 0;               // likewise
@@ -99,6 +100,13 @@ struct MarkedFile {
   // Returns the encoding of the mark, with the word format that fill chose.
   [[nodiscard]] Encoding encoding() const;
 };
+
+// Returns the evidence, in bits, that a surface carries the fingerprint that was written: see
+// evidence_of(). A mark that needs the original leaves none without it, and none where the surface
+// has other points. Precondition: the status is Traceable, or may become it.
+[[nodiscard]] double fingerprint_evidence(const MarkedFile& marked, const Surface& surface,
+                                          const std::optional<Mesh>& original, const Key& key,
+                                          FluxEffort effort);
 
 // The stages of marking one mesh, to be run in this order, from any thread, one at a time. They do
 // not throw: an error becomes the status of the result, and later stages then do nothing.

@@ -51,6 +51,7 @@ struct FoundMessage {
 struct Marking {
   MarkStatus status = MarkStatus::Marked;
   bool is_fingerprint = false;      // of the message, in place of the message itself
+  bool needs_original = false;      // to find the fingerprint, which displaces every point
   std::vector<Vec3> positions;      // of all points, as the file will hold them
   std::vector<Word> words;          // one per part, and of a message others with parities
   WordFormat format;                // of the words; fill chooses the subscript bits
@@ -70,6 +71,7 @@ struct Marking {
   double assign_seconds = 0;          // step 2: costs and assignment, all rounds
   std::optional<FoundMessage> found;  // only of a mesh that is already marked
   WayOut way_out;                     // unless marked
+  double expected_bits = 0;           // of evidence that a fingerprint can leave
   double visibility = 0;              // MSDM2 of the whole mark, if it is limited
   std::optional<FluxMark> flux;       // the flux layer
   FluxObstacle flux_obstacle = FluxObstacle::None;  // why there is none, if it was wanted

@@ -31,11 +31,13 @@ struct MeshOfCopies::Planned {
       mesh.file.set_more_digits(digits);
     }
     plan.emplace(task_on(mesh));
-    // as a single mesh that is too coarse gets a digit more
-    if (!mesh.file.is_decimal() || options.digits || !plan->is_too_coarse()) return;
-    digits = 1;
-    mesh.file.set_more_digits(digits);
-    plan.emplace(task_on(mesh));
+    // as a single mesh that is too coarse gets digits more
+    constexpr int kMostDigits = 8;
+    while (mesh.file.is_decimal() && !options.digits && plan->is_too_coarse() &&
+           digits < (plan->displaces_points() ? kMostDigits : 1)) {
+      mesh.file.set_more_digits(++digits);
+      plan.emplace(task_on(mesh));
+    }
   }
 
   [[nodiscard]] MarkTask task_on(const LoadedMesh& mesh) {

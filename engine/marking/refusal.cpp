@@ -65,13 +65,6 @@ std::string too_small_for_message(const Marking& marking, const MarkRequest& req
   return carries_nothing(marking, request.options);
 }
 
-std::string too_few_bits(const Marking& marking) {
-  return too_little_evidence(
-      static_cast<double>(marking.carriers.size()) * marking.format.part_bits +
-          (marking.flux ? marking.flux->expected_evidence : 0),
-      kTraceable);
-}
-
 std::string too_small_for_fill(const Marking& marking, const MarkOptions& options) {
   if (marking.units_valid == 0) return "this mesh has no unit under " + options.scheme;
   return "none of this mesh's " + count_of(marking.units_valid, "unit") + " under " +
@@ -133,7 +126,7 @@ std::string size_of(std::uint64_t bytes) {
 std::string refusal(const Marking& marking, const MarkRequest& request, double number_step) {
   switch (marking.status) {
     case MarkStatus::TooSmall:
-      if (marking.is_fingerprint) return too_few_bits(marking);
+      if (marking.is_fingerprint) return too_little_evidence(marking.expected_bits, kTraceable);
       return request.is_fill() ? too_small_for_fill(marking, request.options)
                                : too_small_for_message(marking, request);
     case MarkStatus::AlreadyMarked:

@@ -2,10 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
+#include "engine/align/alignment.h"
+#include "engine/base/error.h"
 #include "engine/base/stop.h"
+#include "engine/geometry/box.h"
+#include "engine/marking/copies.h"
 #include "engine/marking/readable.h"
+#include "engine/mesh/surface_diagonal.h"
+#include "engine/trace/displaced_points.h"
 
 namespace triglyph {
 namespace {
@@ -15,20 +22,151 @@ bool has_flux(std::span<const Encoding> encodings) {
                      [](const Encoding& encoding) { return encoding.scheme == kFluxScheme; });
 }
 
+// A suspect may be a piece of the original, or have been cut otherwise.
+constexpr double kMostPointsMore = 2;
+
+// Meshes with more points carry other layers, which need no original.
+constexpr double kMostDisplaced = 20'000;
+
+// The points that do not move are sought among so many, and so many ways are tried: a box has 48.
+constexpr std::size_t kFewPoints = 64;
+constexpr std::size_t kMostWays = 64;
+
+// How far the mark and what happened to it may have moved the surface, as a share of the diagonal.
+constexpr double kReachOfSurface = 0.005;
+// Likewise a point, in relation to the farthest displacement, and at least.
+constexpr double kReachOfPoints = 8;
+constexpr double kLeastReachOfPoints = 0.002;
+
+// Reads the flux layer of the original where it has the suspect's surface.
+void add_flux_of_part(const Mesh& suspect, const Mesh& original, const Similarity& motion,
+                      const Key& key, std::vector<ScoreTable>& tables) {
+  const double reach = kReachOfSurface * box_diagonal(original.positions);
+  const auto places = places_on(original, suspect, motion, reach);
+  const Halfedges halfedges = build_halfedges(original);
+  const FluxCanvas canvas({original, halfedges});
+  if (canvas.obstacle() != FluxObstacle::None) return;
+  for (const FluxSoftReading& reading : read_flux_of_estimate(canvas.estimated(places), key)) {
+    ScoreTable& table = tables.emplace_back(score_flux(reading, 1));
+    table.weight = reading.weight;
+    table.what = "flux, with the original";
+  }
+}
+
+// Reads the displacements of the original's points, with the suspect where it is, where it was
+// brought, and where the points are that do not move. Which points these are is tried where there
+// are few.
+void add_points(const Mesh& suspect, const Mesh& original,
+                const std::optional<Alignment>& alignment, double farthest,
+                std::vector<ScoreTable>& tables) {
+  const double reach =
+      std::max(kReachOfPoints * farthest, kLeastReachOfPoints * box_diagonal(original.positions));
+  std::vector<Similarity> ways = {Similarity()};
+  std::vector<Vec3> fixed;
+  for (const std::uint32_t point : fixed_points(original.positions)) {
+    fixed.push_back(original.positions[point]);
+  }
+  if (alignment) {
+    ways.push_back(alignment->motion);
+    const auto seen = nearest_points({fixed, {}}, suspect, alignment->motion, reach);
+    std::vector<PointPair> pairs;
+    for (std::size_t i = 0; i < fixed.size(); ++i) {
+      if (seen[i]) pairs.push_back({*seen[i], fixed[i]});
+    }
+    if (const auto exact = fitted_similarity(pairs)) {
+      ways.push_back(combined(alignment->motion, *exact));
+    }
+  }
+  if (suspect.positions.size() <= kFewPoints) {
+    for (const Similarity& way : ways_onto(suspect.positions, fixed, kMostWays)) {
+      ways.push_back(way);
+    }
+  }
+  for (const Similarity& way : ways) {
+    for (ScoreTable& table :
+         score_points(original.positions, nearest_points(original, suspect, way, reach), farthest,
+                      static_cast<int>(ways.size()))) {
+      tables.push_back(std::move(table));
+    }
+  }
+}
+
+// Returns what is read with an original; nothing if the suspect has nothing to do with it.
+std::vector<ScoreTable> tables_with(const Mesh& suspect, const OriginalMesh& original,
+                                    const Key& key, const SuspectGroup& group) {
+  std::vector<ScoreTable> tables;
+  const Mesh* mesh = nullptr;
+  try {
+    mesh = &original.mesh();
+  } catch (const Error&) {
+    return tables;
+  }
+  const auto count = static_cast<double>(suspect.positions.size());
+  const bool points_alone = group.encodings.empty();
+  const auto own = static_cast<double>(mesh->positions.size());
+  if (points_alone && (count > kMostPointsMore * own || own > kMostPointsMore * count)) {
+    return tables;
+  }
+  const auto alignment = align(suspect, *mesh);
+  if (alignment && has_flux(group.encodings)) {
+    add_flux_of_part(suspect, *mesh, alignment->motion, key, tables);
+  }
+  // of large meshes no points are displaced
+  if (points_alone || own <= kMostDisplaced) {
+    add_points(suspect, *mesh, alignment,
+               farthest_of_points(original.strength(), surface_diagonal(*mesh)), tables);
+  }
+  return tables;
+}
+
+// Puts tables of the same layer beside each other, each kind with half of the prior.
+std::vector<ScoreTable> joined(std::vector<ScoreTable> blind, std::vector<ScoreTable> with) {
+  for (ScoreTable& table : with) {
+    table.weight -= 1;
+    blind.push_back(std::move(table));
+  }
+  std::stable_sort(blind.begin(), blind.end(), [](const ScoreTable& a, const ScoreTable& b) {
+    return a.layer < b.layer;
+  });
+  return blind;
+}
+
 // Returns the best names of one group.
 std::vector<Traced> trace_group(const Surface& surface, const Key& key,
                                 const Suspects::Prepared& prepared, FluxEffort effort,
                                 std::size_t most) {
-  const std::vector<ScoreTable> tables =
-      read_fingerprints(surface, key, prepared.code, prepared.group.encodings, effort);
+  const SuspectGroup& group = prepared.group;
+  const std::vector<ScoreTable> blind =
+      read_fingerprints(surface, key, prepared.code, group.encodings, effort);
+  std::map<std::size_t, NameEvidence> best;  // by name: the most that speaks for it
+  const double price = std::log2(1 + static_cast<double>(group.originals.size()));
+  const auto add = [&](std::span<const ScoreTable> tables) {
+    for (Scored& scored : best_of(tables, prepared.code, prepared.seeds, most)) {
+      scored.evidence.bits -= price;
+      const auto [known, is_new] = best.try_emplace(scored.name, scored.evidence);
+      if (!is_new && known->second.bits < scored.evidence.bits) {
+        known->second = std::move(scored.evidence);
+      }
+    }
+  };
+  if (!blind.empty()) add(blind);
+  for (const auto& original : group.originals) {
+    stop_point();
+    std::vector<ScoreTable> with = tables_with(surface.mesh, *original, key, group);
+    if (!with.empty()) add(joined(blind, std::move(with)));
+  }
   std::vector<Traced> traced;
-  for (Scored& scored : best_of(tables, prepared.code, prepared.seeds, most)) {
-    traced.push_back({prepared.group.names[scored.name], 0, std::move(scored.evidence), 0});
+  for (auto& [name, evidence] : best) {
+    traced.push_back({group.names[name], 0, std::move(evidence), 0});
   }
   return traced;
 }
 
 }  // namespace
+
+const Mesh& OriginalMesh::mesh() const {
+  return mesh_.get([&] { return MeshFile::open(path_).mesh(); });
+}
 
 Suspects::Suspects(const Key& key, std::vector<SuspectGroup> groups) : key_(key) {
   for (SuspectGroup& group : groups) {

@@ -4,20 +4,43 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "engine/base/once.h"
+#include "engine/marking/options.h"
+#include "engine/mesh/mesh.h"
 #include "engine/message/fingerprint.h"
 #include "engine/trace/suspects.h"
 
 namespace triglyph {
 
+// A mesh of which the suspect may be a copy. Loaded when it is needed, once.
+class OriginalMesh {
+ public:
+  // `strength` is that of the copies.
+  OriginalMesh(std::filesystem::path path, Strength strength)
+      : path_(std::move(path)), strength_(strength) {}
+
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  [[nodiscard]] Strength strength() const { return strength_; }
+  // Throws Error as MeshFile::open() does.
+  [[nodiscard]] const Mesh& mesh() const;
+
+ private:
+  std::filesystem::path path_;
+  Strength strength_;
+  Once<Mesh> mesh_;
+};
+
 // Names whose fingerprints have the same code, and how these are encoded.
 struct SuspectGroup {
   int colluders = 1;
-  std::vector<Encoding> encodings;  // in formats of fingerprints
+  std::vector<Encoding> encodings;  // in formats of fingerprints; none: read with originals alone
   std::vector<Message> names;
+  std::vector<std::shared_ptr<const OriginalMesh>> originals;
 };
 
 // Names under one key, made ready once for any number of files.
@@ -67,8 +90,11 @@ struct TraceOptions {
   }
 };
 
-// Returns the names for which most speaks. Each bound pays for all names, keys, groups and files,
-// and for all that a reader tries. Throws Error as MeshFile::open() does. O(triangles) for each
+// Returns the names for which most speaks. With originals, the suspect is brought to the place of
+// each, see align(): what was cut off is completed for the flux layer, and displacements of points
+// are read. An original that cannot be read, or to which the suspect cannot be brought, tells
+// nothing. Each bound pays for all names, keys, groups, originals and
+// files, and for all that a reader tries. Throws Error as MeshFile::open() does. O(triangles) for each
 // encoding and key, and O(names); see read_fingerprints() and best_of().
 [[nodiscard]] FileTrace trace_file(const std::filesystem::path& path,
                                    std::span<const Suspects> suspects, const TraceOptions& options);

@@ -3,11 +3,9 @@
 #include <algorithm>
 
 #include "engine/base/error.h"
-#include "engine/marking/copies.h"
 #include "engine/marking/extract.h"
 #include "engine/marking/readable.h"
 #include "engine/scheme/registry.h"
-#include "engine/trace/fingerprint_reading.h"
 
 namespace triglyph {
 namespace {
@@ -77,14 +75,10 @@ bool carries(const FluxMark& mark, const Surface& surface, const Key& key) {
 
 // Says whether the surface carries the fingerprint that was written: one name is tried.
 bool carries_fingerprint(const MarkedFile& marked, const Surface& surface, const Key& key) {
-  MarkOptions options = marked.request.options;
-  if (!marked.flux) options.flux = LayerUse::No;
-  const FingerprintCode code = fingerprint_code(key, options);
-  const FingerprintSeed seed = code.seed_of(marked.request.message());
+  std::optional<Mesh> original;
+  if (marked.needs_original) original = MeshFile::open(marked.mesh).mesh();
   for (const FluxEffort effort : {FluxEffort::AsItIs, FluxEffort::All}) {
-    const std::vector<ScoreTable> tables =
-        read_fingerprints(surface, key, code, fingerprint_encodings(options), effort);
-    if (evidence_of(tables, code, seed).bits >= kBelieved) return true;
+    if (fingerprint_evidence(marked, surface, original, key, effort) >= kBelieved) return true;
     if (!marked.flux) break;
   }
   return false;

@@ -138,7 +138,7 @@ TEST_F(RunsForRecipients, AreEnteredInTheLedgerThatKnowsThemAgain) {
   std::sort(recipients.begin(), recipients.end());
   EXPECT_EQ(recipients, (std::vector<std::string>{"Ada", "Ben", "Cem"}));
   const std::vector<Key> keys = {Key::trial(), Key::trial(1)};
-  const KnownCopies known = known_copies(&ledger, nullptr, {}, keys);
+  const KnownCopies known = known_copies(&ledger, nullptr, {}, keys, {});
   ASSERT_EQ(known.suspects.size(), 2U);
   EXPECT_EQ(known.suspects[0].count(), 3U);
   EXPECT_EQ(known.suspects[1].count(), 0U);
