@@ -39,7 +39,7 @@ std::vector<MarkOptions> options_of_list(OptionValues values) {
   values["recipient"] = std::string("any");
   std::vector<MarkOptions> options;
   for (const char* strength : {"normal", "strong"}) {
-    OptionValues all = values;
+    OptionValues all = values;  // the code against two colluders is that against none
     all.emplace("strength", std::string(strength));
     options.push_back(resolve(all).options);
   }
@@ -223,7 +223,8 @@ int run_trace(const TraceArguments& arguments) {
   return arguments.run.supervised([&](const WorkOrder& order) {
     std::optional<Ledger> ledger;
     if (!path.empty()) ledger.emplace(path);
-    const KnownCopies known = known_copies(ledger ? &*ledger : nullptr, list.get(), options, keys, arguments.originals);
+    const KnownCopies known =
+        known_copies(ledger ? &*ledger : nullptr, list.get(), options, keys, arguments.originals);
     std::size_t names = 0;
     for (const Suspects& suspects : known.suspects) names += suspects.count();
     if (names == 0 && known.encodings.empty()) {
@@ -280,10 +281,11 @@ void add_trace_verb(CLI::App& app, Action& action) {
   verb->add_option("--recipients", arguments->recipients,
                    "Look for the names of this list, also without a ledger")
       ->type_name("FILE");
-  verb->add_option("--original", arguments->originals,
-                   "Compare the suspects with this mesh, of which they may be copies or pieces; may "
-                   "be given several times. Meshes whose marks cannot be read without theirs are "
-                   "found by the ledger")
+  verb->add_option(
+          "--original", arguments->originals,
+          "Compare the suspects with this mesh, of which they may be copies or pieces; may "
+          "be given several times. Meshes whose marks cannot be read without theirs are "
+          "found by the ledger")
       ->type_name("MESH");
   verb->add_option("--false-alarm", arguments->false_alarm,
                    "Name only whom chance would name with a lower probability, whatever the number "

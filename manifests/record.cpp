@@ -202,6 +202,7 @@ Json to_json(const Record& record) {
   if (file.flux) json["flux"] = flux_of(*file.flux);
   if (file.status == FileStatus::Traceable) json["evidence_bits"] = file.evidence;
   if (file.needs_original) json["needs_original"] = true;
+  if (file.colluders > 1) json["resists_colluders"] = file.colluders;
   if (file.digits > 0) json["digits"] = file.digits;
   json.update(Json{{"input_hash", file.input_hash},
                    {"output_hash", file.output_hash},
@@ -257,6 +258,7 @@ Record parse_record(const std::string& line) try {
   file.key_fingerprint = json.at("key").get<std::string>();
   number("evidence_bits", file.evidence);
   file.needs_original = json.value("needs_original", false);
+  file.colluders = json.value("resists_colluders", 1);
   if (json.contains("flux")) file.flux = flux_in(json.at("flux"));
   file.digits = json.value("digits", 0);
   if (json.contains("units")) file.units = units_in(json.at("units"), file.parts);

@@ -27,9 +27,14 @@ inline constexpr double kTraceable = 40;
 // Returns the code of the fingerprints that marking makes with these options.
 [[nodiscard]] FingerprintCode fingerprint_code(const Key& key, const MarkOptions& options);
 
-// Returns the encodings of the layers of such a mark: of units that which every mesh has and that
-// of small ones, then flux.
+// Returns the encodings that such a mark may have: of units that against colluders if it is asked
+// for, the usual one and that of small meshes, of which a mesh gets the first that leaves evidence
+// enough; then flux.
 [[nodiscard]] std::vector<Encoding> fingerprint_encodings(const MarkOptions& options);
+
+// Returns how many of 1,000 recipients can combine their copies such that each of them is still
+// named with a false alarm of 10^-9, from the number of bits that units carry one by one.
+[[nodiscard]] int colluders_resisted(std::size_t bits);
 
 class CopyPlan {
  public:
@@ -40,8 +45,8 @@ class CopyPlan {
 
   // Returns the mark of a name: a function of mesh, key, options and name, whatever other copies
   // were made. May be called from several threads at a time. TooSmall where the layers have too
-  // few bits, TooCoarse where the output's numbers are, TooVisible where the mark would exceed MarkOptions::max_visibility, NoFlux;
-  // AlreadyMarked unless MarkOptions::remark is set.
+  // few bits, TooCoarse where the output's numbers are, TooVisible where the mark would exceed
+  // MarkOptions::max_visibility, NoFlux; AlreadyMarked unless MarkOptions::remark is set.
   [[nodiscard]] Marking copy(std::span<const std::uint8_t> name) const;
 
   [[nodiscard]] bool displaces_points() const { return displaces_points_; }

@@ -214,6 +214,7 @@ void FileMarking::describe(const Marking& marking) {
   }
   result_.flux = marking.flux;
   result_.needs_original = marking.needs_original;
+  result_.colluders = marking.colluders;
   result_.parts = static_cast<std::uint32_t>(marking.words.size());
   result_.candidates = marking.candidates;
   result_.units_valid = marking.units_valid;
@@ -353,9 +354,8 @@ void FileMarking::read_back(const Key& key) noexcept {
 bool FileMarking::reads_fingerprint(const Key& key) {
   const Marking& marking = work_->marking;
   const Readable written(work_->output->temporary_path());
-  result_.evidence =
-      fingerprint_evidence(result_, written.surface(), work_->mesh->file.mesh(), key,
-                           FluxEffort::AsItIs);
+  result_.evidence = fingerprint_evidence(result_, written.surface(), work_->mesh->file.mesh(), key,
+                                          FluxEffort::AsItIs);
   result_.units_embedded = static_cast<std::uint32_t>(marking.carriers.size());
   if (result_.request.options.detail) result_.units = marking.carriers;
   if (result_.evidence >= kTraceable) return true;

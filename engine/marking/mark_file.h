@@ -80,6 +80,7 @@ struct MarkedFile {
   std::optional<FluxMark> flux;      // the flux layer
   double evidence = 0;               // of a fingerprint in the output, bits: see evidence_of()
   bool needs_original = false;       // to find the fingerprint
+  int colluders = 1;                 // that it resists: see colluders_resisted()
   int digits = 0;                    // more than the file's that moved coordinates have
   double cost_max = 0;               // of the assignment, model units
   double cost_sum = 0;               // likewise

@@ -71,6 +71,7 @@ struct Marking {
   double assign_seconds = 0;          // step 2: costs and assignment, all rounds
   std::optional<FoundMessage> found;  // only of a mesh that is already marked
   WayOut way_out;                     // unless marked
+  int colluders = 1;                  // that a fingerprint resists: see colluders_resisted()
   double expected_bits = 0;           // of evidence that a fingerprint can leave
   double visibility = 0;              // MSDM2 of the whole mark, if it is limited
   std::optional<FluxMark> flux;       // the flux layer

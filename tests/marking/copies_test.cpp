@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/attack/attack.h"
+#include "engine/attack/collusion.h"
 #include "engine/attack/stored_mesh.h"
 #include "engine/io/export_mesh.h"
 #include "engine/marking/mark.h"
@@ -17,6 +18,7 @@
 #include "engine/metric/structural_distortion.h"
 #include "engine/samples/sample_shapes.h"
 #include "tests/flux/flux_shapes.h"
+#include "tests/support/shapes.h"
 #include "tests/support/temp_folder.h"
 
 namespace triglyph {
@@ -160,14 +162,12 @@ TEST_F(CopiesOfAFile, AreMadeOfMeshesThatAreTooSmallForAMessage) {
 }
 
 TEST(Copies, AreRefusedWhereTheyWouldProveNothing) {
-  const Mesh tiny = make_sample_shape(SampleShape::Closed, 80, 1);
-  const Mesh few{{tiny.positions.begin(), tiny.positions.begin() + 12},
-                 {tiny.triangles.begin(), tiny.triangles.begin() + 4}};
-  Mesh valid = few;
-  std::erase_if(valid.triangles,
-                [](const Triangle& t) { return t[0] > 11 || t[1] > 11 || t[2] > 11; });
-  const Marking marking = copy_of(valid, for_name("Ada"));
-  EXPECT_EQ(marking.status, MarkStatus::TooSmall);
+  const Marking of_units = copy_of(make_sample_shape(SampleShape::Closed, 80, 1),
+                                   for_name("Ada", {{"scheme", std::string("tsq")}}));
+  EXPECT_EQ(of_units.status, MarkStatus::TooSmall);
+  const Marking of_points = copy_of(test::tetrahedron(), for_name("Ada"));
+  EXPECT_EQ(of_points.status, MarkStatus::TooSmall);
+  EXPECT_TRUE(of_points.needs_original);
 }
 
 TEST(Copies, KeepWithinWhatMayBeSeen) {
@@ -200,8 +200,44 @@ TEST(Copies, TakeOptionsThatFitTogether) {
   EXPECT_EQ(resolve({{"message", std::string("a")}}).options.carry, Carry::Any);
   EXPECT_EQ(resolve({{"message", std::string("a")}, {"scheme", std::string("tsq")}}).options.carry,
             Carry::Whole);
+  EXPECT_EQ(for_name("a").options.collusion, 2U);
   const MarkOptions resistant = for_name("a", {{"collusion", std::int64_t{3}}}).options;
   EXPECT_EQ(fingerprint_encodings(resistant)[0].format.part_bits, 4);
+}
+
+TEST(Copies, ResistMoreColludersTheMoreBitsTheyHave) {
+  EXPECT_EQ(colluders_resisted(0), 1);
+  int last = 1;
+  for (std::size_t bits = 16; bits < 100000; bits *= 2) {
+    EXPECT_GE(colluders_resisted(bits), last);
+    last = colluders_resisted(bits);
+  }
+  EXPECT_EQ(last, kMostColluders);
+  EXPECT_EQ(colluders_resisted(1024), 3);  // those of a large mesh
+}
+
+TEST_F(CopiesOfAFile, AreTracedToThoseWhoCombineThem) {
+  const Mesh mesh = test::knobbly(80);
+  std::vector<Mesh> copies;
+  MarkOptions options;
+  for (const int buyer : {3, 77, 150}) {
+    const MarkRequest request = for_name("buyer " + std::to_string(buyer));
+    options = request.options;
+    const Marking marking = copy_of(mesh, request);
+    ASSERT_EQ(marking.status, MarkStatus::Marked);
+    EXPECT_GE(marking.colluders, 3);
+    copies.push_back({marking.positions, mesh.triangles});
+  }
+  for (const CollusionKind& kind : collusion_kinds()) {
+    const FileTrace found = trace(save(colluded(copies, kind, 1), "leak.obj"), options);
+    ASSERT_FALSE(found.names.empty());
+    EXPECT_TRUE(TraceOptions{}.believes(found.names[0])) << kind.name;
+    for (const Traced& traced : found.names) {
+      const bool is_colluder =
+          traced.name == names_[3] || traced.name == names_[77] || traced.name == names_[150];
+      EXPECT_TRUE(is_colluder || !TraceOptions{}.believes(traced)) << kind.name;
+    }
+  }
 }
 
 }  // namespace
