@@ -5,7 +5,6 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 
@@ -45,7 +44,7 @@ void add(std::vector<Encoding>& encodings, std::vector<Encoding> others) {
 
 // Names that are looked for together.
 struct Group {
-  std::set<std::string> names;
+  std::vector<std::string> names;
   std::vector<Encoding> encodings;
   std::optional<Strength> strength;  // of displaced points
 };
@@ -64,7 +63,7 @@ class MarksInLedger {
     const bool needs_original = mark.scheme == kPointsScheme;
     if (options.carry != Carry::Whole) {
       Group& group = groups_[mark.key][{colluders, needs_original ? mark.mesh : ""}];
-      group.names.insert(bytes_of(mark.message_hex));
+      group.names.push_back(bytes_of(mark.message_hex));
       if (needs_original) group.strength = options.strength;
       if (is_new_ && !needs_original) add(group.encodings, fingerprint_encodings(options));
     }
@@ -113,7 +112,7 @@ KnownCopies known_copies(const Ledger* ledger, const Recipients* list,
     if (list != nullptr) {
       for (const MarkOptions& each : options) {
         Group& group = groups[{static_cast<int>(each.collusion), ""}];
-        for (const Recipient& recipient : *list) group.names.insert(recipient.name);
+        for (const Recipient& recipient : *list) group.names.push_back(recipient.name);
         add(group.encodings, fingerprint_encodings(each));
       }
     }
@@ -123,6 +122,8 @@ KnownCopies known_copies(const Ledger* ledger, const Recipients* list,
       SuspectGroup& one = listed.emplace_back();
       one.colluders = colluders;
       one.encodings = std::move(group.encodings);
+      std::sort(group.names.begin(), group.names.end());
+      group.names.erase(std::unique(group.names.begin(), group.names.end()), group.names.end());
       for (const std::string& name : group.names) one.names.emplace_back(name.begin(), name.end());
       one.originals = named;
       if (group.strength) {

@@ -13,18 +13,23 @@
 #include "engine/geometry/box.h"
 #include "engine/geometry/spatial_index.h"
 #include "engine/geometry/symmetric_matrix.h"
-#include "engine/mesh/edge_graph.h"
 
 namespace triglyph {
 namespace {
 
 // Shares of the original's diagonal.
-constexpr double kClose = 0.01;        // what lies on the original lies within
+constexpr double kClose = 0.01;         // what lies on the original lies within
 constexpr double kFarthestPull = 0.02;  // of points that pull at first
 constexpr double kNearestPull = 0.002;  // and in the end
 
 constexpr double kLeastOverlap = 0.5;
 constexpr double kSureOverlap = 0.9;  // no other way is tried
+
+// Ways that are this nearly as good as the best are returned as well, unless they are the same
+// but for this share of the diagonal.
+constexpr double kAsGood = 0.9;
+constexpr double kSameWay = 0.001;
+constexpr std::size_t kMostAlignments = 4;
 
 constexpr std::size_t kJudges = 400;    // points by which a way is judged
 constexpr std::size_t kPullers = 4000;  // points by which the suspect is moved closer
@@ -47,27 +52,25 @@ std::vector<Vec3> some_points(std::span<const Vec3> positions, std::size_t most)
   return points;
 }
 
-// Numbers that agree where points have the same surroundings: how many neighbours they, their
-// neighbours and so on have. This work is based on: Weisfeiler, Leman. The reduction of a graph to
-// canonical form and the algebra which appears therein (1968).
-std::vector<std::uint64_t> surroundings(const Mesh& mesh) {
-  const EdgeGraph graph = edge_graph(mesh);
-  const std::size_t count = mesh.positions.size();
-  std::vector<std::uint64_t> colours(count), next(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    colours[i] = graph.around(static_cast<std::uint32_t>(i)).size();
-  }
+enum class Handedness { Same, Mirrored };
+
+// Numbers that agree where points have the same surroundings: how many triangles they, their
+// neighbours and so on have, in what order. This work is based on: Weisfeiler, Leman. The reduction
+// of a graph to canonical form and the algebra which appears therein (1968).
+std::vector<std::uint64_t> surroundings(const Mesh& mesh, Handedness handedness) {
+  std::vector<std::uint64_t> colours(mesh.positions.size(), 0), next(colours.size());
   for (int ring = 0; ring < kRings; ++ring) {
-    parallel_for(
-        count,
-        [&](std::size_t i) {
-          std::uint64_t sum = 0;  // whatever the order of the neighbours
-          for (const EdgeGraph::Spoke& spoke : graph.around(static_cast<std::uint32_t>(i))) {
-            sum += mix_bits(colours[spoke.to]);
-          }
-          next[i] = mix_bits(colours[i] ^ mix_bits(sum));
-        },
-        1024);
+    std::fill(next.begin(), next.end(), 0);
+    for (const Triangle& t : mesh.triangles) {
+      for (std::size_t corner = 0; corner < 3; ++corner) {
+        std::uint64_t first = colours[t[(corner + 1) % 3]];
+        std::uint64_t second = colours[t[(corner + 2) % 3]];
+        if (handedness == Handedness::Mirrored) std::swap(first, second);
+        next[t[corner]] += mix_bits(mix_bits(first) ^ second);  // whatever the order of triangles
+      }
+    }
+    for (std::size_t i = 0; i < next.size(); ++i)
+      next[i] = mix_bits(colours[i] ^ mix_bits(next[i]));
     std::swap(colours, next);
   }
   return colours;
@@ -93,7 +96,8 @@ std::optional<Similarity> trimmed_similarity(std::vector<PointPair> pairs) {
     fitted = fitted_similarity(pairs);
     if (!fitted) return std::nullopt;
     std::vector<double> distances;
-    for (const PointPair& pair : pairs) distances.push_back(((*fitted)(pair.from) - pair.to).norm());
+    for (const PointPair& pair : pairs)
+      distances.push_back(((*fitted)(pair.from) - pair.to).norm());
     std::vector<double> sorted = distances;
     const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
     std::nth_element(sorted.begin(), middle, sorted.end());
@@ -108,9 +112,10 @@ std::optional<Similarity> trimmed_similarity(std::vector<PointPair> pairs) {
   return fitted;
 }
 
-std::optional<Similarity> by_surroundings(const Mesh& suspect, const Mesh& original) {
-  const std::vector<std::uint64_t> ours = surroundings(suspect);
-  const std::vector<std::uint64_t> theirs = surroundings(original);
+std::optional<Similarity> by_surroundings(const Mesh& suspect, const Mesh& original,
+                                          Handedness handedness) {
+  const std::vector<std::uint64_t> ours = surroundings(suspect, handedness);
+  const std::vector<std::uint64_t> theirs = surroundings(original, Handedness::Same);
   const auto known = unique_points(theirs);
   const auto own = unique_points(ours);
   std::vector<PointPair> pairs;
@@ -209,6 +214,13 @@ class Judgement {
     return result;
   }
 
+  // Returns how far apart the points are that two motions bring the suspect to, at most.
+  [[nodiscard]] double differ(const Similarity& a, const Similarity& b) const {
+    double most = 0;
+    for (const Vec3& point : judges_) most = std::max(most, (a(point) - b(point)).norm());
+    return most;
+  }
+
   // Moves the suspect closer until it moves no more.
   [[nodiscard]] Similarity pulled(Similarity motion) const {
     double reach = kFarthestPull * diagonal_;
@@ -216,10 +228,7 @@ class Judgement {
       stop_point();
       const std::optional<Similarity> next = pulled_once(motion, reach);
       if (!next) return motion;
-      double moved = 0;
-      for (const Vec3& point : judges_) {
-        moved = std::max(moved, ((*next)(point)-motion(point)).norm());
-      }
+      const double moved = differ(*next, motion);
       motion = *next;
       reach = std::max(kNearestPull * diagonal_, reach / 1.3);
       if (moved < 1e-8 * diagonal_ && reach == kNearestPull * diagonal_) break;
@@ -270,17 +279,16 @@ class Judgement {
     const Row step = squares.ldlt().solve(right);
     const Eigen::Vector3d angle(step[0], step[1], step[2]);
     const Eigen::Matrix3d turn =
-        angle.norm() > 0
-            ? Eigen::AngleAxisd(angle.norm(), angle.normalized()).toRotationMatrix()
-            : Eigen::Matrix3d::Identity();
+        angle.norm() > 0 ? Eigen::AngleAxisd(angle.norm(), angle.normalized()).toRotationMatrix()
+                         : Eigen::Matrix3d::Identity();
     const double factor = 1 + step[6];
     if (!(factor > 0) || !turn.allFinite()) return std::nullopt;
     Similarity next;
     next.scale = motion.scale * factor;
     for (std::size_t row = 0; row < 3; ++row) {
       const auto r = static_cast<Eigen::Index>(row);
-      next.rows[row] = motion.rows[0] * turn(r, 0) + motion.rows[1] * turn(r, 1) +
-                       motion.rows[2] * turn(r, 2);
+      next.rows[row] =
+          motion.rows[0] * turn(r, 0) + motion.rows[1] * turn(r, 1) + motion.rows[2] * turn(r, 2);
     }
     const Vec3 arm = motion.shift - centre;
     for (std::size_t row = 0; row < 3; ++row) {
@@ -300,26 +308,43 @@ class Judgement {
 
 }  // namespace
 
-std::optional<Alignment> align(const Mesh& suspect, const Mesh& original) {
-  if (suspect.positions.empty() || original.triangles.empty()) return std::nullopt;
+std::vector<Alignment> align(const Mesh& suspect, const Mesh& original) {
+  if (suspect.positions.empty() || original.triangles.empty()) return {};
   const Judgement judgement(suspect, original);
-  if (!(judgement.diagonal() > 0)) return std::nullopt;
-  Alignment best = judgement.judged(Similarity());
-  const auto consider = [&](const Similarity& way) {
-    const Alignment judged = judgement.judged(way);
-    if (judged.overlap > best.overlap ||
-        (judged.overlap == best.overlap && judged.rms < best.rms)) {
-      best = judged;
-    }
+  if (!(judgement.diagonal() > 0)) return {};
+  std::vector<Alignment> ways = {judgement.judged(Similarity())};
+  const auto is_sure = [&] {
+    return std::any_of(ways.begin(), ways.end(),
+                       [](const Alignment& way) { return way.overlap >= kSureOverlap; });
   };
-  if (best.overlap < kSureOverlap) {
-    if (const auto way = by_surroundings(suspect, original)) consider(*way);
+  for (const Handedness handedness : {Handedness::Same, Handedness::Mirrored}) {
+    if (is_sure()) break;
+    const auto way = by_surroundings(suspect, original, handedness);
+    if (way) ways.push_back(judgement.judged(*way));
   }
-  if (best.overlap < kSureOverlap) {
-    for (const Similarity& way : by_axes(suspect, original)) consider(judgement.pulled(way));
+  if (!is_sure()) {
+    for (const Similarity& way : by_axes(suspect, original)) {
+      ways.push_back(judgement.judged(judgement.pulled(way)));
+    }
   }
-  if (best.overlap < kLeastOverlap) return std::nullopt;
-  consider(judgement.pulled(best.motion));
+  std::erase_if(ways, [](const Alignment& way) { return way.overlap < kLeastOverlap; });
+  for (Alignment& way : ways) {
+    const Alignment closer = judgement.judged(judgement.pulled(way.motion));
+    if (closer.overlap >= way.overlap && closer.rms <= way.rms) way = closer;
+  }
+  std::stable_sort(ways.begin(), ways.end(), [](const Alignment& a, const Alignment& b) {
+    return a.overlap != b.overlap ? a.overlap > b.overlap : a.rms < b.rms;
+  });
+  std::vector<Alignment> best;
+  for (const Alignment& way : ways) {
+    const bool is_as_good =
+        best.empty() || (way.overlap >= kAsGood * best[0].overlap &&
+                         way.rms <= best[0].rms / kAsGood + kSameWay * judgement.diagonal());
+    const bool is_new = std::none_of(best.begin(), best.end(), [&](const Alignment& other) {
+      return judgement.differ(way.motion, other.motion) <= kSameWay * judgement.diagonal();
+    });
+    if (is_as_good && is_new && best.size() < kMostAlignments) best.push_back(way);
+  }
   return best;
 }
 

@@ -16,19 +16,20 @@ struct Alignment {
   double rms = 0;      // distance of these, model units of the original
 };
 
-// Returns the similarity, or the mirror image, that brings the suspect to the original; nothing if
-// less than half of its points come within a hundredth of the original's diagonal. Tries the
-// suspect as it is; points whose surroundings are connected as in the original and nowhere else in
-// it, which finds pieces that were cut out, whatever happened to the shape; and the principal axes,
-// which finds whole shapes, however they are triangulated. A piece of which the connectivity has
-// changed as well is found only where it has not been moved. Then moves the suspect closer, point
-// to plane. Deterministic for any number of threads. O(points log points), parallel.
+// Returns the similarities, mirror images among them, that bring the suspect to the original, at
+// most four, the best first: several of a shape that is symmetric; none if less than half of its
+// points come within a hundredth of the original's diagonal. Tries the suspect as it is; points
+// whose surroundings are connected as in the original and nowhere else in it, which finds pieces
+// that were cut out, whatever happened to the shape; and the principal axes, which finds whole
+// shapes, however they are triangulated. A piece of which the connectivity has changed as well is
+// found only where it has not been moved. Then moves the suspect closer, point to plane.
+// Deterministic for any number of threads. O(points log points), parallel.
 //
 // This work is based on:
 // Chen, Medioni. Object modelling by registration of multiple range images. Image and Vision
 // Computing 10 (1992).
 // Chetverikov, Svirko, Stepanov, Krsek. The trimmed iterative closest point algorithm. ICPR (2002).
-[[nodiscard]] std::optional<Alignment> align(const Mesh& suspect, const Mesh& original);
+[[nodiscard]] std::vector<Alignment> align(const Mesh& suspect, const Mesh& original);
 
 // Returns the similarities, mirror images among them, that bring some of the points closest to the
 // targets, four or fewer, at most `most` of them, the closest first. Tries every choice of points

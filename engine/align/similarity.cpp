@@ -41,7 +41,8 @@ std::optional<Similarity> fitted_similarity(std::span<const PointPair> pairs) {
     covariance += (as_eigen(pair.to) - to) * a.transpose();
     spread += a * a.transpose();
   }
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance,
+                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Eigen::Vector3d values = svd.singularValues();
   if (!(values[0] > 0) || values[1] <= kFlat * values[0] || !(spread.trace() > 0)) {
     return std::nullopt;

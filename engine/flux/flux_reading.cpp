@@ -181,7 +181,7 @@ double promise_of_pilots(const Measurement& measurement, const AxesGuess& axes,
 }
 
 // Returns the binary logarithm of the likelihood of phases by the pilots.
-double weight_of_pilots(const SoftPhases& phases, double sharpness) {
+double likelihood_of_pilots(const SoftPhases& phases, double sharpness) {
   const double log_mean = log_bessel(sharpness);
   double nats = 0;
   for (std::size_t i = 0; i < kFunctionals; ++i) {
@@ -224,7 +224,7 @@ class FluxReader {
       const double prior = -attempt.guess->price - attempt.axes->price -
                            std::log2(static_cast<double>(kSteps * kSharpness.size()));
       for (const double sharpness : kSharpness) {
-        readings.push_back({phases, sharpness, prior + weight_of_pilots(phases, sharpness),
+        readings.push_back({phases, sharpness, prior, likelihood_of_pilots(phases, sharpness),
                             attempt.guess->undone});
       }
     }
@@ -384,8 +384,8 @@ std::vector<FluxSoftReading> read_flux_of_estimate(const FluxCanvas::Estimate& e
       FluxSoftReading& reading = readings.emplace_back();
       reading.phases = phases;
       reading.sharpness = sharpness;
-      reading.weight = weight_of_pilots(phases, sharpness) -
-                       std::log2(static_cast<double>(kSteps * kSharpness.size()));
+      reading.prior = -std::log2(static_cast<double>(kSteps * kSharpness.size()));
+      reading.likelihood = likelihood_of_pilots(phases, sharpness);
     }
   }
   return readings;
@@ -400,9 +400,10 @@ std::vector<FluxSoftReading> read_flux_softly(const Surface& surface, const Key&
     return effort == FluxEffort::AsItIs;
   });
   double most = 0;
-  for (const FluxSoftReading& reading : readings) most = std::max(most, reading.weight);
+  for (const FluxSoftReading& reading : readings)
+    most = std::max(most, reading.prior + reading.likelihood);
   std::erase_if(readings, [&](const FluxSoftReading& reading) {
-    return reading.weight < most - kNegligibleWeight;
+    return reading.prior + reading.likelihood < most - kNegligibleWeight;
   });
   return readings;
 }

@@ -49,9 +49,9 @@ enum class FluxEffort : std::uint8_t {
 struct FluxSoftReading {
   SoftPhases phases;
   double sharpness = 0;
-  // The binary logarithm of the hypothesis' prior and of its likelihood by the pilots, whose mean
-  // without a mark is one.
-  double weight = 0;
+  double prior = 0;  // of the hypothesis, a binary logarithm
+  // The binary logarithm of its likelihood by the pilots, whose mean without a mark is one.
+  double likelihood = 0;
   std::string undone;
 };
 

@@ -39,26 +39,28 @@ constexpr double kReachOfPoints = 8;
 constexpr double kLeastReachOfPoints = 0.002;
 
 // Reads the flux layer of the original where it has the suspect's surface.
-void add_flux_of_part(const Mesh& suspect, const Mesh& original, const Similarity& motion,
-                      const Key& key, std::vector<ScoreTable>& tables) {
+void add_flux_of_part(const Mesh& suspect, const Mesh& original,
+                      std::span<const Alignment> alignments, const Key& key,
+                      std::vector<ScoreTable>& tables) {
   const double reach = kReachOfSurface * box_diagonal(original.positions);
-  const auto places = places_on(original, suspect, motion, reach);
   const Halfedges halfedges = build_halfedges(original);
   const FluxCanvas canvas({original, halfedges});
   if (canvas.obstacle() != FluxObstacle::None) return;
-  for (const FluxSoftReading& reading : read_flux_of_estimate(canvas.estimated(places), key)) {
-    ScoreTable& table = tables.emplace_back(score_flux(reading, 1));
-    table.weight = reading.weight;
-    table.what = "flux, with the original";
+  for (const Alignment& alignment : alignments) {
+    const auto places = places_on(original, suspect, alignment.motion, reach);
+    for (const FluxSoftReading& reading : read_flux_of_estimate(canvas.estimated(places), key)) {
+      ScoreTable& table = tables.emplace_back(score_flux(reading, 1));
+      table.prior -= std::log2(static_cast<double>(alignments.size()));
+      table.what = "flux, with the original";
+    }
   }
 }
 
 // Reads the displacements of the original's points, with the suspect where it is, where it was
 // brought, and where the points are that do not move. Which points these are is tried where there
 // are few.
-void add_points(const Mesh& suspect, const Mesh& original,
-                const std::optional<Alignment>& alignment, double farthest,
-                std::vector<ScoreTable>& tables) {
+void add_points(const Mesh& suspect, const Mesh& original, std::span<const Alignment> alignments,
+                double farthest, std::vector<ScoreTable>& tables) {
   const double reach =
       std::max(kReachOfPoints * farthest, kLeastReachOfPoints * box_diagonal(original.positions));
   std::vector<Similarity> ways = {Similarity()};
@@ -66,15 +68,15 @@ void add_points(const Mesh& suspect, const Mesh& original,
   for (const std::uint32_t point : fixed_points(original.positions)) {
     fixed.push_back(original.positions[point]);
   }
-  if (alignment) {
-    ways.push_back(alignment->motion);
-    const auto seen = nearest_points({fixed, {}}, suspect, alignment->motion, reach);
+  for (const Alignment& alignment : alignments) {
+    ways.push_back(alignment.motion);
+    const auto seen = nearest_points({fixed, {}}, suspect, alignment.motion, reach);
     std::vector<PointPair> pairs;
     for (std::size_t i = 0; i < fixed.size(); ++i) {
       if (seen[i]) pairs.push_back({*seen[i], fixed[i]});
     }
     if (const auto exact = fitted_similarity(pairs)) {
-      ways.push_back(combined(alignment->motion, *exact));
+      ways.push_back(combined(alignment.motion, *exact));
     }
   }
   if (suspect.positions.size() <= kFewPoints) {
@@ -107,13 +109,13 @@ std::vector<ScoreTable> tables_with(const Mesh& suspect, const OriginalMesh& ori
   if (points_alone && (count > kMostPointsMore * own || own > kMostPointsMore * count)) {
     return tables;
   }
-  const auto alignment = align(suspect, *mesh);
-  if (alignment && has_flux(group.encodings)) {
-    add_flux_of_part(suspect, *mesh, alignment->motion, key, tables);
+  const std::vector<Alignment> alignments = align(suspect, *mesh);
+  if (!alignments.empty() && has_flux(group.encodings)) {
+    add_flux_of_part(suspect, *mesh, alignments, key, tables);
   }
   // of large meshes no points are displaced
   if (points_alone || own <= kMostDisplaced) {
-    add_points(suspect, *mesh, alignment,
+    add_points(suspect, *mesh, alignments,
                farthest_of_points(original.strength(), surface_diagonal(*mesh)), tables);
   }
   return tables;
@@ -122,12 +124,11 @@ std::vector<ScoreTable> tables_with(const Mesh& suspect, const OriginalMesh& ori
 // Puts tables of the same layer beside each other, each kind with half of the prior.
 std::vector<ScoreTable> joined(std::vector<ScoreTable> blind, std::vector<ScoreTable> with) {
   for (ScoreTable& table : with) {
-    table.weight -= 1;
+    table.prior -= 1;
     blind.push_back(std::move(table));
   }
-  std::stable_sort(blind.begin(), blind.end(), [](const ScoreTable& a, const ScoreTable& b) {
-    return a.layer < b.layer;
-  });
+  std::stable_sort(blind.begin(), blind.end(),
+                   [](const ScoreTable& a, const ScoreTable& b) { return a.layer < b.layer; });
   return blind;
 }
 

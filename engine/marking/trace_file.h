@@ -94,8 +94,8 @@ struct TraceOptions {
 // each, see align(): what was cut off is completed for the flux layer, and displacements of points
 // are read. An original that cannot be read, or to which the suspect cannot be brought, tells
 // nothing. Each bound pays for all names, keys, groups, originals and
-// files, and for all that a reader tries. Throws Error as MeshFile::open() does. O(triangles) for each
-// encoding and key, and O(names); see read_fingerprints() and best_of().
+// files, and for all that a reader tries. Throws Error as MeshFile::open() does. O(triangles) for
+// each encoding and key, and O(names); see read_fingerprints() and best_of().
 [[nodiscard]] FileTrace trace_file(const std::filesystem::path& path,
                                    std::span<const Suspects> suspects, const TraceOptions& options);
 

@@ -45,10 +45,13 @@ double FingerprintCode::bias(FingerprintLayer layer, std::uint32_t bit) const {
   return points_[at].bias;
 }
 
+std::uint64_t FingerprintCode::draw_of(FingerprintSeed seed, FingerprintLayer layer) {
+  return mix_bits(mix_bits(seed) ^ static_cast<std::uint64_t>(layer));
+}
+
 std::uint32_t FingerprintCode::fair_symbol(FingerprintSeed seed, FingerprintLayer layer,
                                            std::uint32_t symbol, int bits) const {
-  return static_cast<std::uint32_t>(random_bits(seed, static_cast<std::uint64_t>(layer), symbol) >>
-                                    (64 - bits));
+  return fair_symbol(draw_of(seed, layer), symbol, bits);
 }
 
 std::uint32_t FingerprintCode::symbol(FingerprintSeed seed, FingerprintLayer layer,

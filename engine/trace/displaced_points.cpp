@@ -56,7 +56,8 @@ std::vector<std::uint32_t> fixed_points(std::span<const Vec3> positions) {
     }
     const auto farthest = std::max_element(nearest.begin(), nearest.end());
     const auto point = static_cast<std::uint32_t>(farthest - nearest.begin());
-    if (fixed.empty()) std::fill(nearest.begin(), nearest.end(), std::numeric_limits<double>::infinity());
+    if (fixed.empty())
+      std::fill(nearest.begin(), nearest.end(), std::numeric_limits<double>::infinity());
     last = positions[point];
     fixed.push_back(point);
   }
@@ -89,13 +90,13 @@ std::vector<ScoreTable> score_points(std::span<const Vec3> original,
     table.layer = FingerprintLayer::Points;
     table.bits = kPointBits;
     table.what = "points";
-    table.weight = -std::log2(static_cast<double>(kDisturbances.size()) * ways);
+    table.prior = -std::log2(static_cast<double>(kDisturbances.size()) * ways);
     for (std::size_t i = 0; i < original.size(); ++i) {
       if (!seen[i] || std::binary_search(fixed.begin(), fixed.end(), i)) continue;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const double offset = ((*seen[i])[axis] - original[i][axis]) / farthest;
         table.symbols.push_back(symbol_of(i, axis));
-        table.weight += append_levels(offset, disturbance, table.scores) / M_LN2;
+        table.likelihood += append_levels(offset, disturbance, table.scores) / M_LN2;
       }
     }
   }

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
+#include <limits>
+#include <utility>
 
 #include "engine/base/error.h"
+#include "engine/base/parallel.h"
 #include "engine/base/stop.h"
 #include "engine/scheme/registry.h"
 
@@ -43,9 +45,13 @@ void add_encoding(const Surface& surface, const Key& key, const FingerprintCode&
   const WordCode words(key, encoding.format);
   const auto scheme = make_scheme(encoding.scheme, words, encoding.scheme_options);
   const auto bound = scheme->bind(surface);
-  add_unit_tables(bound->read(), words, code, encoding.scheme, tables);
+  const WordFormat& format = encoding.format;
+  const std::string what = encoding.scheme + " m" + std::to_string(format.marker_bits) + " s" +
+                           std::to_string(format.subscript_bits) + " w" +
+                           std::to_string(format.part_bits);
+  add_unit_tables(bound->read(), words, code, what, tables);
   for (const std::vector<Reading>& readings : bound->read_turned_over()) {
-    add_unit_tables(readings, words, code, encoding.scheme + " turned over", tables);
+    add_unit_tables(readings, words, code, what + ", turned over", tables);
   }
 }
 
@@ -55,7 +61,7 @@ void add_flux(const Surface& surface, const Key& key, const FingerprintCode& cod
   for (const FluxSoftReading& reading : read_flux_softly(surface, key, effort)) {
     for (const int colluders : tried) {
       ScoreTable table = score_flux(reading, colluders);
-      table.weight = reading.weight - std::log2(static_cast<double>(tried.size()));
+      table.prior -= std::log2(static_cast<double>(tried.size()));
       table.what = reading.undone.empty() ? "flux" : "flux, " + reading.undone + " undone";
       tables.push_back(std::move(table));
     }
@@ -84,43 +90,117 @@ std::vector<ScoreTable> read_fingerprints(const Surface& surface, const Key& key
     check(encoding.format.part_bits <= kMostFingerprintBits, "a format of fingerprints");
     add_encoding(surface, key, code, encoding, tables);
   }
-  for (ScoreTable& table : tables) table.weight -= std::log2(static_cast<double>(tables.size()));
+  for (ScoreTable& table : tables) table.prior = -std::log2(static_cast<double>(tables.size()));
   if (has_flux) add_flux(surface, key, code, effort, tables);
   return tables;
 }
 
-// The tables of a layer are added up by their weights, beside those that the layer says nothing.
-NameEvidence evidence_of(std::span<const ScoreTable> tables, const FingerprintCode& code,
-                         FingerprintSeed seed) {
-  NameEvidence all;
-  for (auto first = tables.begin(); first != tables.end();) {
-    const auto last = std::find_if(
-        first, tables.end(), [&](const ScoreTable& table) { return table.layer != first->layer; });
-    const double most_weight =
-        std::max_element(first, last, [](const ScoreTable& a, const ScoreTable& b) {
-          return a.weight < b.weight;
-        })->weight;
-    std::vector<double> logs;
-    double weights = 0;
-    for (auto table = first; table != last; ++table) {
-      weights += std::exp2(table->weight - most_weight);
-      logs.push_back(table->weight - most_weight + table->score(code, seed));
-    }
-    const auto best = std::max_element(logs.begin(), logs.end());
-    double sum = 0;
-    for (const double log : logs) sum += std::exp2(log - *best);
-    // what the tables say of the name, together
-    const double said = std::log2(sum / weights) + *best;
-    const double larger = std::max(said, 0.0);
-    const double bits = std::log2((1 - kSaysNothing) * std::exp2(said - larger) +
-                                  kSaysNothing * std::exp2(-larger)) +
-                        larger;
-    const auto at = static_cast<std::size_t>(best - logs.begin());
-    all.layers.push_back({first->layer, bits, first[at].what});
-    all.bits += bits;
+namespace {
+
+// Returns the binary logarithm of a sum of powers of two.
+template <typename Exponent>
+double log_of_sum(std::size_t count, const Exponent& exponent) {
+  double most = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < count; ++i) most = std::max(most, exponent(i));
+  double sum = 0;
+  for (std::size_t i = 0; i < count; ++i) sum += std::exp2(exponent(i) - most);
+  return std::log2(sum) + most;
+}
+
+// The tables of a layer are added up, half by their weights and half by their priors alone, since
+// what was done to a mesh may suit no hypothesis and then favour a wrong one; beside those that the
+// layer says nothing. `scores` are those of the tables for one name.
+LayerEvidence layer_evidence(std::span<const ScoreTable> tables, std::span<const double> scores) {
+  const std::size_t count = tables.size();
+  const auto normalised = [&](const auto& weight) {
+    const double all = log_of_sum(count, weight);
+    return log_of_sum(count, [&](std::size_t t) { return weight(t) + scores[t]; }) - all;
+  };
+  const std::array<double, 2> said = {normalised([&](std::size_t t) { return tables[t].weight(); }),
+                                      normalised([&](std::size_t t) { return tables[t].prior; })};
+  const double bits = log_of_sum(3, [&](std::size_t i) {
+    return i < 2 ? std::log2((1 - kSaysNothing) / 2) + said.at(i) : std::log2(kSaysNothing);
+  });
+  std::size_t best = 0;
+  for (std::size_t t = 1; t < count; ++t) {
+    if (tables[t].prior + scores[t] > tables[best].prior + scores[best]) best = t;
+  }
+  return {tables[0].layer, bits, tables[best].what};
+}
+
+// The tables of one layer, which follow each other.
+template <typename Visit>
+void for_each_layer(std::span<const ScoreTable> tables, const Visit& visit) {
+  for (std::size_t first = 0; first < tables.size();) {
+    std::size_t last = first;
+    while (last < tables.size() && tables[last].layer == tables[first].layer) ++last;
+    visit(tables.subspan(first, last - first));
     first = last;
   }
+}
+
+// Calls the function for every run of tables whose symbols have as many bits.
+template <typename Visit>
+void for_each_width(std::span<const ScoreTable> tables, const Visit& visit) {
+  for (std::size_t first = 0; first < tables.size();) {
+    std::size_t last = first;
+    while (last < tables.size() && tables[last].bits == tables[first].bits) ++last;
+    visit(first, last);
+    first = last;
+  }
+}
+
+}  // namespace
+
+std::vector<NameEvidence> evidence_of_each(std::span<const ScoreTable> tables,
+                                           const FingerprintCode& code,
+                                           std::span<const FingerprintSeed> seeds) {
+  std::vector<NameEvidence> all(seeds.size());
+  for_each_layer(tables, [&](std::span<const ScoreTable> layer) {
+    std::vector<double> scores(seeds.size() * layer.size());  // by name
+    for_each_width(layer, [&](std::size_t first, std::size_t last) {
+      std::vector<char> is_read;
+      for (std::size_t t = first; t < last; ++t) {
+        for (const std::uint32_t symbol : layer[t].symbols) {
+          if (symbol >= is_read.size()) is_read.resize(symbol + 1, 0);
+          is_read[symbol] = 1;
+        }
+      }
+      std::vector<std::uint16_t> values(seeds.size() * is_read.size());  // by name
+      parallel_for(
+          seeds.size(),
+          [&](std::size_t name) {
+            for (std::uint32_t symbol = 0; symbol < is_read.size(); ++symbol) {
+              if (is_read[symbol] == 0) continue;
+              values[name * is_read.size() + symbol] =
+                  static_cast<std::uint16_t>(layer[first].value_of(code, seeds[name], symbol));
+            }
+          },
+          16);
+      stop_point();
+      // a table after the other, which stays in the cache
+      parallel_for(last - first, [&](std::size_t t) {
+        for (std::size_t name = 0; name < seeds.size(); ++name) {
+          scores[name * layer.size() + first + t] = layer[first + t].score(
+              std::span(values).subspan(name * is_read.size(), is_read.size()));
+        }
+      });
+    });
+    parallel_for(
+        seeds.size(),
+        [&](std::size_t name) {
+          all[name].layers.push_back(
+              layer_evidence(layer, std::span(scores).subspan(name * layer.size(), layer.size())));
+          all[name].bits += all[name].layers.back().bits;
+        },
+        16);
+  });
   return all;
+}
+
+NameEvidence evidence_of(std::span<const ScoreTable> tables, const FingerprintCode& code,
+                         FingerprintSeed seed) {
+  return std::move(evidence_of_each(tables, code, std::span(&seed, 1))[0]);
 }
 
 }  // namespace triglyph

@@ -46,4 +46,9 @@ struct NameEvidence {
 [[nodiscard]] NameEvidence evidence_of(std::span<const ScoreTable> tables,
                                        const FingerprintCode& code, FingerprintSeed seed);
 
+// Returns evidence_of() each of the names. O(tables * names * symbols), parallel.
+[[nodiscard]] std::vector<NameEvidence> evidence_of_each(std::span<const ScoreTable> tables,
+                                                         const FingerprintCode& code,
+                                                         std::span<const FingerprintSeed> seeds);
+
 }  // namespace triglyph

@@ -69,14 +69,31 @@ double append_values(std::span<const Votes::Gain> gains, std::uint32_t symbol, i
 
 }  // namespace
 
+std::uint32_t ScoreTable::value_of(const FingerprintCode& code, FingerprintSeed seed,
+                                   std::uint32_t symbol) const {
+  return layer == FingerprintLayer::Units ? code.symbol(seed, layer, symbol, bits)
+                                          : code.fair_symbol(seed, layer, symbol, bits);
+}
+
 double ScoreTable::score(const FingerprintCode& code, FingerprintSeed seed) const {
   double sum = 0;
   const float* row = scores.data();
+  const bool is_fair = layer != FingerprintLayer::Units || code.is_fair();
+  const std::uint64_t draw = FingerprintCode::draw_of(seed, layer);
   for (const std::uint32_t symbol : symbols) {
-    const std::uint32_t value = layer == FingerprintLayer::Units
-                                    ? code.symbol(seed, layer, symbol, bits)
-                                    : code.fair_symbol(seed, layer, symbol, bits);
+    const std::uint32_t value = is_fair ? FingerprintCode::fair_symbol(draw, symbol, bits)
+                                        : code.symbol(seed, layer, symbol, bits);
     sum += double{row[value]};
+    row += std::size_t{1} << bits;
+  }
+  return sum;
+}
+
+double ScoreTable::score(std::span<const std::uint16_t> values) const {
+  double sum = 0;
+  const float* row = scores.data();
+  for (const std::uint32_t symbol : symbols) {
+    sum += double{row[values[symbol]]};
     row += std::size_t{1} << bits;
   }
   return sum;
@@ -91,6 +108,7 @@ ScoreTable score_votes(const Votes& votes, const WordCode& words, const Votes::T
                        const FingerprintCode& code, int colluders) {
   ScoreTable table;
   table.layer = FingerprintLayer::Units;
+  table.colluders = colluders;
   table.bits = words.format().part_bits;
   const auto width = static_cast<std::size_t>(table.bits);
   const std::vector<double> ratios =
@@ -102,7 +120,7 @@ ScoreTable score_votes(const Votes& votes, const WordCode& words, const Votes::T
     table.symbols.push_back(symbol);
     std::vector<float> alone;
     const double log_mean = append_values(gains, symbol, table.bits, code, alone);
-    table.weight += (votes.far_log(index, trust) + log_mean) / M_LN2;
+    table.likelihood += (votes.far_log(index, trust) + log_mean) / M_LN2;
     if (colluders == 1) {
       table.scores.insert(table.scores.end(), alone.begin(), alone.end());
       continue;
@@ -133,6 +151,9 @@ FluxPhases phases_of_name(const FingerprintCode& code, FingerprintSeed seed) {
 ScoreTable score_flux(const FluxSoftReading& reading, int colluders) {
   ScoreTable table;
   table.layer = FingerprintLayer::Flux;
+  table.prior = reading.prior;
+  table.likelihood = reading.likelihood;
+  table.colluders = colluders;
   table.bits = kFluxPhaseBits;
   const double log_mean = log_bessel(reading.sharpness);
   const double share = 1.0 / colluders;

@@ -28,13 +28,24 @@ struct ScoreTable {
   int bits = 0;                        // of a symbol
   std::vector<std::uint32_t> symbols;  // the numbers of those that were read, ascending
   std::vector<float> scores;           // 2^bits for each of these, in bits
-  // The binary logarithm of the hypothesis' prior and of its likelihood over all names, in relation
-  // to a mesh without a mark; weighing hypotheses by it favours no name.
-  double weight = 0;
-  std::string what;  // the hypothesis in words
+  double prior = 0;                    // of the hypothesis, a binary logarithm
+  // The binary logarithm of its likelihood over all names, in relation to a mesh without a mark:
+  // weighing hypotheses by it favours no name.
+  double likelihood = 0;
+  int colluders = 1;  // of whom each is as likely to have written a bit
+  std::string what;   // the hypothesis in words
 
-  // Returns the score of a name, before the price. O(symbols).
+  [[nodiscard]] double weight() const { return prior + likelihood; }
+
+  // Returns the score of a name. O(symbols).
   [[nodiscard]] double score(const FingerprintCode& code, FingerprintSeed seed) const;
+
+  // Likewise of a name whose symbols are known by their numbers.
+  [[nodiscard]] double score(std::span<const std::uint16_t> values) const;
+
+  // Returns the symbol of a name with the number of one of this table's.
+  [[nodiscard]] std::uint32_t value_of(const FingerprintCode& code, FingerprintSeed seed,
+                                       std::uint32_t symbol) const;
 };
 
 // Numbers of colluders that a reader allows for.

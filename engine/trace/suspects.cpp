@@ -1,7 +1,11 @@
 #include "engine/trace/suspects.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
+#include <set>
+#include <string>
+#include <utility>
 
 #include "engine/base/parallel.h"
 
@@ -11,26 +15,37 @@ namespace {
 // Names that are weighed against every table.
 constexpr std::size_t kWeighed = 1000;
 
-// Symbols that are looked up for every other name: a million of them take a second.
-constexpr std::size_t kLookedUp = 300;
+// Symbols of a layer that are looked up for every other name.
+constexpr std::size_t kLookedUp = 1300;
 
 constexpr std::size_t kNamesPerTask = 256;
 
-// Returns the tables for a first look: of each layer those that weigh most.
+// Returns the tables for a first look: of each layer those that weigh most, of each kind of units
+// the one that is the least misled by several who combined their copies.
 std::vector<const ScoreTable*> tables_for_screening(std::span<const ScoreTable> tables) {
-  std::vector<std::pair<double, const ScoreTable*>> ranked;
-  for (const ScoreTable& table : tables) ranked.emplace_back(table.weight, &table);
-  std::stable_sort(ranked.begin(), ranked.end(),
-                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<const ScoreTable*> ranked;
+  for (const ScoreTable& table : tables) ranked.push_back(&table);
+  std::stable_sort(ranked.begin(), ranked.end(), [](const ScoreTable* a, const ScoreTable* b) {
+    return a->weight() > b->weight();
+  });
   std::vector<const ScoreTable*> chosen;
   for (const FingerprintLayer layer :
        {FingerprintLayer::Units, FingerprintLayer::Flux, FingerprintLayer::Points}) {
+    std::set<std::pair<std::string, int>> kinds;
     std::size_t symbols = 0;
-    for (const auto& [weight, table] : ranked) {
-      if (table->layer != layer) continue;
-      const bool is_first = symbols == 0;
+    for (const ScoreTable* best : ranked) {
+      if (best->layer != layer) continue;
+      const bool is_units = layer == FingerprintLayer::Units;
+      if (is_units && !kinds.emplace(best->what, best->bits).second) continue;
+      const ScoreTable* table = best;
+      for (const ScoreTable& other : tables) {
+        const bool is_alike =
+            other.layer == layer && other.what == best->what && other.bits == best->bits;
+        // the last of a kind believes least
+        if (is_units && is_alike && other.colluders == 2) table = &other;
+      }
+      if (symbols > 0 && symbols + table->symbols.size() > kLookedUp) break;
       symbols += table->symbols.size();
-      if (!is_first && symbols > kLookedUp) break;
       chosen.push_back(table);
     }
   }
@@ -48,7 +63,7 @@ std::vector<std::size_t> screened(std::span<const ScoreTable> tables, const Fing
         std::array<double, 3> best{};  // over the tables of each layer
         for (const ScoreTable* table : chosen) {
           double& of_layer = best.at(static_cast<std::size_t>(table->layer));
-          of_layer = std::max(of_layer, table->score(code, seeds[i]) + table->weight);
+          of_layer = std::max(of_layer, table->score(code, seeds[i]) + table->prior);
         }
         scores[i] = static_cast<float>(best[0] + best[1] + best[2]);
       },
@@ -83,13 +98,11 @@ std::vector<Scored> best_of(std::span<const ScoreTable> tables, const Fingerprin
     names.resize(seeds.size());
     std::iota(names.begin(), names.end(), std::size_t{0});
   }
+  std::vector<FingerprintSeed> weighed(names.size());
+  for (std::size_t i = 0; i < names.size(); ++i) weighed[i] = seeds[names[i]];
+  std::vector<NameEvidence> evidence = evidence_of_each(tables, code, weighed);
   std::vector<Scored> scored(names.size());
-  parallel_for(
-      names.size(),
-      [&](std::size_t i) {
-        scored[i] = {names[i], evidence_of(tables, code, seeds[names[i]])};
-      },
-      1);
+  for (std::size_t i = 0; i < names.size(); ++i) scored[i] = {names[i], std::move(evidence[i])};
   std::stable_sort(scored.begin(), scored.end(), [](const Scored& a, const Scored& b) {
     return a.evidence.bits > b.evidence.bits;
   });

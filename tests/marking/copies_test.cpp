@@ -205,6 +205,74 @@ TEST(Copies, TakeOptionsThatFitTogether) {
   EXPECT_EQ(fingerprint_encodings(resistant)[0].format.part_bits, 4);
 }
 
+TEST_F(CopiesOfAFile, AreFoundInPiecesWithTheOriginal) {
+  const auto mesh = save(knobs(), "in.obj");
+  const MarkRequest request = for_name("buyer 9", {{"scheme", std::string("flux")}});
+  const MarkedFile file = mark_file(mesh, folder_ / "out.obj", request, Key::trial());
+  ASSERT_EQ(file.status, FileStatus::Traceable) << file.error;
+  const Mesh written = MeshFile::open(file.out).mesh();
+  const auto piece = save(Attack::parsed("crop:40").applied(written, 5), "piece.obj");
+  expect_nobody(trace(piece, request.options));
+  SuspectGroup group;
+  group.encodings = fingerprint_encodings(request.options);
+  group.names = names_;
+  group.originals = {std::make_shared<OriginalMesh>(mesh, Strength::Normal),
+                     std::make_shared<OriginalMesh>(folder_ / "absent.obj", Strength::Normal)};
+  const std::vector<Suspects> suspects = {Suspects(Key::trial(), {group})};
+  const FileTrace found = trace_file(piece, suspects, {});
+  ASSERT_FALSE(found.names.empty());
+  EXPECT_EQ(found.names[0].name, names_[9]);
+  EXPECT_GT(found.names[0].evidence.bits, 25);
+  EXPECT_GT(found.names[0].evidence.bits, found.names[1].evidence.bits + 15);
+}
+
+TEST_F(CopiesOfAFile, OfABoxNeedTheOriginalAndAreFoundHoweverItIsTurned) {
+  Mesh box{{},
+           {{0, 2, 1},
+            {1, 2, 3},
+            {4, 5, 6},
+            {5, 7, 6},
+            {0, 1, 4},
+            {1, 5, 4},
+            {2, 6, 3},
+            {3, 6, 7},
+            {0, 4, 2},
+            {2, 4, 6},
+            {1, 3, 5},
+            {3, 7, 5}}};
+  for (int corner = 0; corner < 8; ++corner) {
+    box.positions.emplace_back(corner & 1, (corner >> 1) & 1, corner >> 2);
+  }
+  const auto mesh = folder_.write("box.obj", [&] {
+    std::string text;  // of whole numbers
+    for (const Vec3& p : box.positions) {
+      text += "v " + std::to_string(std::lround(p[0])) + " " + std::to_string(std::lround(p[1])) +
+              " " + std::to_string(std::lround(p[2])) + "\n";
+    }
+    for (const Triangle& t : box.triangles) {
+      text += "f " + std::to_string(t[0] + 1) + " " + std::to_string(t[1] + 1) + " " +
+              std::to_string(t[2] + 1) + "\n";
+    }
+    return text;
+  }());
+  const MarkRequest request = for_name("buyer 5");
+  const MarkedFile file = mark_file(mesh, folder_ / "out.obj", request, Key::trial());
+  ASSERT_EQ(file.status, FileStatus::Traceable) << file.error;
+  EXPECT_TRUE(file.needs_original);
+  EXPECT_GT(file.digits, 1);
+  EXPECT_EQ(verify_file(file, Key::trial()).verdict, FileVerdict::Intact);
+  SuspectGroup group;
+  group.names = names_;
+  group.originals = {std::make_shared<OriginalMesh>(mesh, Strength::Normal)};
+  const std::vector<Suspects> suspects = {Suspects(Key::trial(), {group})};
+  const Mesh written = MeshFile::open(file.out).mesh();
+  for (const char* attack : {"none", "similarity", "mirror+reorder"}) {
+    const auto suspect = save(Attack::parsed(attack).applied(written, 3), "suspect.obj");
+    expect_named(trace_file(suspect, suspects, {}), 5);
+  }
+  expect_nobody(trace_file(mesh, suspects, {}));
+}
+
 TEST(Copies, ResistMoreColludersTheMoreBitsTheyHave) {
   EXPECT_EQ(colluders_resisted(0), 1);
   int last = 1;

@@ -44,7 +44,7 @@ std::vector<ScoreTable> tables_for(const FingerprintCode& code, FingerprintSeed 
     for (const int colluders : {1, 2}) {
       tables.push_back(score_votes(votes, words, trust, code, colluders));
       tables.back().what = "units";
-      tables.back().weight -= 2;
+      tables.back().prior = -2;
     }
   }
   return tables;
