@@ -124,6 +124,24 @@ TEST_F(GoldenMarks, MarksOfOlderBuildsStayReadable) {
   }
 }
 
+TEST_F(GoldenMarks, CopiesOfOlderBuildsAreStillTraced) {
+  fs::copy(source_ / "copies", copy() / "copies");
+  for (const char* file : {"flux.off", "units.ply", "small.stl", "box.obj"}) {
+    const std::string arguments = "trace --json copies/" + std::string(file) +
+                                  " --recipients copies/recipients.txt" +
+                                  (std::string(file) == "box.obj" ? " --original copies/box-original.obj" : "");
+    const Result result = run(arguments);
+    EXPECT_EQ(result.code, 0) << arguments << "\n" << result.out << result.err;
+    const auto json = nlohmann::json::parse(result.out, nullptr, false);
+    ASSERT_TRUE(json.is_object() && !json["names"].empty()) << result.out;
+    EXPECT_EQ(json["names"][0]["name"], "Ada") << arguments;
+    EXPECT_TRUE(json["names"][0]["is_believed"].get<bool>()) << arguments;
+    if (json["names"].size() > 1) {
+      EXPECT_FALSE(json["names"][1]["is_believed"].get<bool>()) << arguments;
+    }
+  }
+}
+
 TEST_F(GoldenMarks, RecordsOfOlderBuildsStillVerify) {
   for (const GoldenRecords& records : kGoldenRecords) {
     const std::string arguments =
