@@ -83,8 +83,8 @@ void enter_record(Ledger& ledger, std::int64_t run, const Record& record) {
     }
     mark->mesh = item.source;
     mark->out = item.target;
-    mark->scheme = file.needs_original ? std::string(kPointsScheme)
-                                       : file.request.options.scheme_name();
+    mark->scheme =
+        file.needs_original ? std::string(kPointsScheme) : file.request.options.scheme_name();
     mark->options = options_text(file.request.options);
     mark->key = file.key_fingerprint;
     mark->input_hash = file.input_hash;

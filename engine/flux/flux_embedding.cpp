@@ -390,8 +390,8 @@ FluxCanvas::Estimate FluxCanvas::estimated(std::span<const std::optional<Vec3>> 
   const double noise = kUsualOffset * diagonal_;
   const double prior = noise * noise / (kUsualChange * kUsualChange);
   for (Eigen::Index i = 0; i < count + kSimilarities; ++i) squares(i, i) += prior;
-  const Eigen::MatrixXd inverse = squares.ldlt().solve(
-      Eigen::MatrixXd::Identity(count + kSimilarities, count + kSimilarities));
+  const Eigen::MatrixXd inverse =
+      squares.ldlt().solve(Eigen::MatrixXd::Identity(count + kSimilarities, count + kSimilarities));
   const Eigen::VectorXd changes = inverse * (fields.transpose() * offsets);
   const double misfit =
       rows > 0 ? (offsets - fields * changes).squaredNorm() / static_cast<double>(rows) : 0;

@@ -127,9 +127,9 @@ TEST_F(GoldenMarks, MarksOfOlderBuildsStayReadable) {
 TEST_F(GoldenMarks, CopiesOfOlderBuildsAreStillTraced) {
   fs::copy(source_ / "copies", copy() / "copies");
   for (const char* file : {"flux.off", "units.ply", "small.stl", "box.obj"}) {
-    const std::string arguments = "trace --json copies/" + std::string(file) +
-                                  " --recipients copies/recipients.txt" +
-                                  (std::string(file) == "box.obj" ? " --original copies/box-original.obj" : "");
+    const std::string arguments =
+        "trace --json copies/" + std::string(file) + " --recipients copies/recipients.txt" +
+        (std::string(file) == "box.obj" ? " --original copies/box-original.obj" : "");
     const Result result = run(arguments);
     EXPECT_EQ(result.code, 0) << arguments << "\n" << result.out << result.err;
     const auto json = nlohmann::json::parse(result.out, nullptr, false);
