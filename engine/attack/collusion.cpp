@@ -93,7 +93,7 @@ Mesh mixed(std::span<const Mesh> copies, std::uint64_t seed) {
   return result;
 }
 
-constexpr std::array<CollusionKind, 6> kKinds = {{
+constexpr std::array<CollusionKind, 6> kCollusions = {{
     {"average", "the mean of the points", averaged},
     {"majority", "the median of each coordinate, or the mean of the two in the middle",
      of_majority},
@@ -139,12 +139,12 @@ Mesh numbered_alike(const Mesh& copy, const Mesh& first, std::size_t number) {
 }  // namespace
 
 std::span<const CollusionKind> collusion_kinds() {
-  return kKinds;
+  return kCollusions;
 }
 
 const CollusionKind& collusion_kind(std::string_view name) {
   std::vector<std::string> names;
-  for (const CollusionKind& kind : kKinds) {
+  for (const CollusionKind& kind : kCollusions) {
     if (kind.name == name) return kind;
     names.emplace_back(kind.name);
   }

@@ -52,9 +52,6 @@ std::optional<FileStatus> refused_status(MarkStatus status) {
   return FileStatus::Failed;
 }
 
-// Digits more than a file's that moved coordinates get without being asked for.
-constexpr int kMostDigits = 8;
-
 // What a surface gives back of the mark.
 struct ReadBack {
   std::vector<Carrier> embedded;  // whose word can be read

@@ -32,7 +32,6 @@ struct MeshOfCopies::Planned {
     }
     plan.emplace(task_on(mesh));
     // as a single mesh that is too coarse gets digits more
-    constexpr int kMostDigits = 8;
     while (mesh.file.is_decimal() && !options.digits && plan->is_too_coarse() &&
            digits < (plan->displaces_points() ? kMostDigits : 1)) {
       mesh.file.set_more_digits(++digits);

@@ -14,6 +14,9 @@
 
 namespace triglyph {
 
+// Digits more than a file's that moved coordinates get at most without being asked for.
+inline constexpr int kMostDigits = 8;
+
 struct LoadedMesh {
   MeshFile file;
   Halfedges halfedges;
