@@ -25,7 +25,6 @@ struct MeshAttackArguments {
   std::vector<std::string> inputs;
   fs::path out_dir;
   AttackArguments attacks;
-  std::string collusion;
   bool json = false;
   RunArguments run;
 };
@@ -93,29 +92,7 @@ void print_result(const AttackResult& result, std::uint64_t seed, bool json) {
   std::cout << to_line(line);
 }
 
-// Combines the copies into the last file.
-int run_collusion(const MeshAttackArguments& arguments) {
-  const CollusionKind& kind = collusion_kind(arguments.collusion);
-  if (arguments.inputs.size() < 3 || !arguments.out_dir.empty()) {
-    refuse("give --collude KIND with two copies or more and the file to write");
-  }
-  const std::vector<Attack> attacks = arguments.attacks.attacks();
-  if (attacks.size() > 1) refuse("one attack may follow collusion; join several by +");
-  const std::vector<fs::path> copies(arguments.inputs.begin(), arguments.inputs.end() - 1);
-  const fs::path out = arguments.inputs.back();
-  check_name(out);
-  const std::optional<Attack> attack = attacks.empty() ? std::nullopt : std::optional(attacks[0]);
-  const AttackedFile result = collude_files(copies, out, kind, attack, arguments.attacks.seed());
-  if (!arguments.run.is_quiet()) {
-    std::cout << printable(out.string()) << ": " << kind.name << " of " << copies.size()
-              << " copies, " << result.points << " points, " << result.triangles << " triangles\n";
-    check_standard_output();
-  }
-  return kDone;
-}
-
 int run_attack(const MeshAttackArguments& arguments) {
-  if (!arguments.collusion.empty()) return run_collusion(arguments);
   const std::vector<AttackJob> jobs =
       arguments.out_dir.empty() ? single_job(arguments) : all_jobs(arguments);
   const std::uint64_t seed = arguments.attacks.seed();
@@ -154,14 +131,8 @@ void add_attack_verb(CLI::App& app, Action& action) {
                    "An attack, a mesh and the file to write; or, with --out-dir, meshes, folders, "
                    "globs, manifests (.jsonl), or - for a list on standard input")
       ->required()
-      ->type_name("ATTACK MESH OUT|COPY COPY OUT|INPUT");
+      ->type_name("ATTACK MESH OUT|INPUT");
   arguments->attacks.add_to(*verb);
-  std::vector<std::string> kinds;
-  for (const CollusionKind& kind : collusion_kinds()) kinds.emplace_back(kind.name);
-  verb->add_option("--collude", arguments->collusion,
-                   "Combine copies of one mesh into one: " + CLI::detail::join(kinds, ", ") +
-                       "; then the inputs are the copies and the file to write")
-      ->type_name("KIND");
   verb->add_option("--out-dir", arguments->out_dir,
                    "Directory for the meshes, each attack in a folder of its own")
       ->type_name("DIR");
@@ -170,8 +141,6 @@ void add_attack_verb(CLI::App& app, Action& action) {
   verb->footer("Attacks:\n" + list_of_attacks() +
                "Simplify a mesh to half of its triangles, then add noise:\n"
                "  triglyph attack simplify:50+noise:0.1 marked/bunny.obj bunny.obj\n"
-               "Combine the copies of three who share theirs:\n"
-               "  triglyph attack --collude average ada.obj ben.obj cem.obj leaked.obj\n"
                "Try what leaked copies may have gone through:\n"
                "  triglyph attack --protocol leaks marked/ --out-dir attacked\n"
                "  triglyph extract attacked/ --key-file owner.key");

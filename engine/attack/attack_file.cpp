@@ -33,47 +33,23 @@ Mesh applied_to_file(const Attack& attack, const std::filesystem::path& path, co
   throw Error(error.code(), path, "", error.message());
 }
 
-void refuse_input(const std::filesystem::path& mesh, const std::filesystem::path& out) {
-  std::error_code ignored;
-  if (std::filesystem::equivalent(mesh, out, ignored)) {
-    throw Error(ErrorCode::Usage, out, "", "is the mesh itself, which is never overwritten");
-  }
-}
-
-AttackedFile write_attacked(const Mesh& mesh, const std::filesystem::path& out, FileFormat format) {
-  ExportFormat options;
-  options.format = format;
-  options.significant_digits = kDigitsOfAFloat;
-  OutputFile output(out);
-  output.write(export_mesh(mesh, options));
-  output.commit();
-  return {mesh.positions.size(), mesh.triangles.size()};
-}
-
 }  // namespace
 
 AttackedFile attack_file(const std::filesystem::path& mesh, const std::filesystem::path& out,
                          const Attack& attack, std::uint64_t seed) {
   const MeshFile file = MeshFile::open(mesh);
-  const FileFormat format = format_of(out, mesh, file.format());
-  refuse_input(mesh, out);
-  return write_attacked(applied_to_file(attack, mesh, file.mesh(), seed), out, format);
-}
-
-AttackedFile collude_files(std::span<const std::filesystem::path> copies,
-                           const std::filesystem::path& out, const CollusionKind& kind,
-                           const std::optional<Attack>& attack, std::uint64_t seed) {
-  std::vector<Mesh> meshes;
-  FileFormat format = FileFormat::Obj;
-  for (const std::filesystem::path& copy : copies) {
-    const MeshFile file = MeshFile::open(copy);
-    if (meshes.empty()) format = format_of(out, copy, file.format());
-    refuse_input(copy, out);
-    meshes.push_back(file.mesh());
+  ExportFormat format;
+  format.format = format_of(out, mesh, file.format());
+  format.significant_digits = kDigitsOfAFloat;
+  std::error_code ignored;
+  if (std::filesystem::equivalent(mesh, out, ignored)) {
+    throw Error(ErrorCode::Usage, out, "", "is the mesh itself, which is never overwritten");
   }
-  Mesh result = colluded(meshes, kind, seed);
-  if (attack) result = applied_to_file(*attack, copies[0], result, seed);
-  return write_attacked(result, out, format);
+  const Mesh attacked = applied_to_file(attack, mesh, file.mesh(), seed);
+  OutputFile output(out);
+  output.write(export_mesh(attacked, format));
+  output.commit();
+  return {attacked.positions.size(), attacked.triangles.size()};
 }
 
 }  // namespace triglyph

@@ -4,11 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <optional>
-#include <span>
 
 #include "engine/attack/attack.h"
-#include "engine/attack/collusion.h"
 
 namespace triglyph {
 
@@ -25,12 +22,5 @@ struct AttackedFile {
 // that is the input.
 AttackedFile attack_file(const std::filesystem::path& mesh, const std::filesystem::path& out,
                          const Attack& attack, std::uint64_t seed);
-
-// Combines copies of one mesh, see colluded(), attacks the result if that is wanted, and writes it
-// in the first copy's format as above. Throws likewise, and Error Usage for copies that differ,
-// naming the file.
-AttackedFile collude_files(std::span<const std::filesystem::path> copies,
-                           const std::filesystem::path& out, const CollusionKind& kind,
-                           const std::optional<Attack>& attack, std::uint64_t seed);
 
 }  // namespace triglyph
