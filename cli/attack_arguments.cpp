@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "engine/attack/collusion.h"
+#include "engine/base/error.h"
+
 namespace triglyph {
 
 void AttackArguments::add_to(CLI::App& verb) {
@@ -31,6 +34,26 @@ std::vector<Attack> AttackArguments::attacks() const {
     if (!is_known) attacks.push_back(std::move(attack));
   }
   return attacks;
+}
+
+Attack AttackArguments::in_a_row() const {
+  if (!protocol_.empty()) {
+    throw Error(ErrorCode::Usage, {}, "",
+                "the attacks of a protocol are alternatives; give those to be done one after the "
+                "other by --attack");
+  }
+  if (names_.empty()) return Attack::parsed("none");
+  return Attack::parsed(CLI::detail::join(names_, "+"));
+}
+
+std::string list_of_collusions() {
+  std::string text;
+  for (const CollusionKind& kind : collusion_kinds()) {
+    std::string name(kind.name);
+    name.resize(14, ' ');
+    text += "  " + name + std::string(kind.help) + "\n";
+  }
+  return text;
 }
 
 std::string list_of_attacks() {

@@ -87,6 +87,13 @@ struct AttackItem final : FileItem {
   AttackResult result;
 };
 
+AttackedFile attacked(const AttackJob& job, std::uint64_t seed) {
+  if (!job.collusion) return attack_file(job.mesh, job.out, job.attack, seed);
+  std::vector<fs::path> copies{job.mesh};
+  copies.insert(copies.end(), job.more_copies.begin(), job.more_copies.end());
+  return collude_files(copies, job.out, *job.collusion, job.attack, seed);
+}
+
 struct VerifyItem final : FileItem {
   Record record;
   Verification verification;
@@ -161,11 +168,7 @@ void attack_files(std::span<const AttackJob> jobs, std::uint64_t seed, const Run
     return item;
   };
   run_files<AttackItem>(
-      source,
-      [&](AttackItem& item) {
-        const auto& [mesh, out, attack] = item.result.job;
-        item.result.attacked = attack_file(mesh, out, attack, seed);
-      },
+      source, [&](AttackItem& item) { item.result.attacked = attacked(item.result.job, seed); },
       [&](AttackItem& item) {
         item.result.failure = std::move(item.failure);
         on_result(item.result);

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -58,11 +59,13 @@ void trace_files(std::span<const std::filesystem::path> files, std::span<const S
                  const std::function<void(const TraceResult&)>& on_result,
                  const std::atomic<bool>& stop);
 
-// A mesh to attack, and the file to write.
+// A mesh to attack, and the file to write; or copies of a mesh to combine and attack.
 struct AttackJob {
   std::filesystem::path mesh;
   std::filesystem::path out;
   Attack attack;
+  std::vector<std::filesystem::path> more_copies;  // of the mesh; with a collusion only
+  std::optional<Collusion> collusion;              // what combines the mesh with them
 };
 
 // The result of attacking one mesh: what was written or a failure.
@@ -72,8 +75,8 @@ struct AttackResult {
   std::optional<FileFailure> failure;
 };
 
-// Attacks every mesh; see attack_file(). Calls `on_result` in the order of the jobs, one call at a
-// time.
+// Attacks every mesh; see attack_file() and collude_files(). Calls `on_result` in the order of the
+// jobs, one call at a time.
 void attack_files(std::span<const AttackJob> jobs, std::uint64_t seed, const RunContext& context,
                   const std::function<void(const AttackResult&)>& on_result,
                   const std::atomic<bool>& stop);

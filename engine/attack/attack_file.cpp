@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "engine/attack/copies.h"
 #include "engine/base/error.h"
 #include "engine/base/output_file.h"
 #include "engine/base/text.h"
@@ -33,23 +34,39 @@ Mesh applied_to_file(const Attack& attack, const std::filesystem::path& path, co
   throw Error(error.code(), path, "", error.message());
 }
 
+void check_not_overwritten(const std::filesystem::path& mesh, const std::filesystem::path& out,
+                           const std::string& what) {
+  std::error_code ignored;
+  if (std::filesystem::equivalent(mesh, out, ignored)) {
+    throw Error(ErrorCode::Usage, out, "", "is " + what + " itself, which is never overwritten");
+  }
+}
+
+AttackedFile write_attacked(const Mesh& mesh, const std::filesystem::path& out, FileFormat format) {
+  OutputFile output(out);
+  output.write(export_mesh(mesh, {.format = format, .significant_digits = kDigitsOfAFloat}));
+  output.commit();
+  return {mesh.positions.size(), mesh.triangles.size()};
+}
+
 }  // namespace
 
 AttackedFile attack_file(const std::filesystem::path& mesh, const std::filesystem::path& out,
                          const Attack& attack, std::uint64_t seed) {
   const MeshFile file = MeshFile::open(mesh);
-  ExportFormat format;
-  format.format = format_of(out, mesh, file.format());
-  format.significant_digits = kDigitsOfAFloat;
-  std::error_code ignored;
-  if (std::filesystem::equivalent(mesh, out, ignored)) {
-    throw Error(ErrorCode::Usage, out, "", "is the mesh itself, which is never overwritten");
-  }
-  const Mesh attacked = applied_to_file(attack, mesh, file.mesh(), seed);
-  OutputFile output(out);
-  output.write(export_mesh(attacked, format));
-  output.commit();
-  return {attacked.positions.size(), attacked.triangles.size()};
+  const FileFormat format = format_of(out, mesh, file.format());
+  check_not_overwritten(mesh, out, "the mesh");
+  return write_attacked(applied_to_file(attack, mesh, file.mesh(), seed), out, format);
+}
+
+AttackedFile collude_files(std::span<const std::filesystem::path> copies,
+                           const std::filesystem::path& out, Collusion collusion,
+                           const Attack& attack, std::uint64_t seed) {
+  for (const std::filesystem::path& copy : copies) check_not_overwritten(copy, out, "a copy");
+  const Copies read = read_copies(copies);
+  const Mesh mesh = colluded(read.meshes, collusion, seed);
+  const FileFormat format = format_of(out, copies.front(), read.format);
+  return write_attacked(applied_to_file(attack, copies.front(), mesh, seed), out, format);
 }
 
 }  // namespace triglyph

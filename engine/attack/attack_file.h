@@ -1,11 +1,13 @@
-// An attack on a mesh file.
+// An attack on a mesh file, and a collusion of several.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 
 #include "engine/attack/attack.h"
+#include "engine/attack/collusion.h"
 
 namespace triglyph {
 
@@ -22,5 +24,12 @@ struct AttackedFile {
 // that is the input.
 AttackedFile attack_file(const std::filesystem::path& mesh, const std::filesystem::path& out,
                          const Attack& attack, std::uint64_t seed);
+
+// Reads copies of a mesh, combines them, attacks the result and writes it, as attack_file() would
+// that of the first copy. Throws Error as attack_file(), read_copies() and colluded() do, and Usage
+// for an output that is any of the copies.
+AttackedFile collude_files(std::span<const std::filesystem::path> copies,
+                           const std::filesystem::path& out, Collusion collusion,
+                           const Attack& attack, std::uint64_t seed);
 
 }  // namespace triglyph

@@ -88,6 +88,62 @@ TEST_F(CliAttack, OfAWrongCommandSaysWhatIsMeant) {
   EXPECT_FALSE(exists("b.obj"));
 }
 
+TEST_F(CliAttack, ColludingWritesOneMeshOfTheCopies) {
+  make_sample("clean.obj", 800);
+  for (const char* name : {"ada", "ben", "cem"}) {
+    const std::string seed = std::to_string(std::string(name).front());
+    const std::string copy = name + std::string(name == std::string("ben") ? ".stl" : ".obj");
+    ASSERT_EQ(run("attack noise:0.1 clean.obj " + copy + " --seed " + seed).code, 0);
+  }
+  const std::string copies = "ada.obj ben.stl cem.obj";
+  const test::CliResult result = run("attack --collude average " + copies + " --out o/leaked.obj");
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(result.out.rfind("o/leaked.obj: average of 3 copies, ", 0), 0U) << result.out;
+  EXPECT_EQ(MeshFile::open(folder_ / "o/leaked.obj").mesh().triangles,
+            MeshFile::open(folder_ / "ada.obj").mesh().triangles);
+  EXPECT_EQ(run("attack --collude average cem.obj ben.stl ada.obj --out b.obj").code, 0);
+  EXPECT_EQ(MeshFile::open(folder_ / "b.obj").mesh().positions,
+            MeshFile::open(folder_ / "o/leaked.obj").mesh().positions);
+  // attacks follow in the order given, each as often as it is given
+  const test::CliResult more =
+      run("attack --collude mix " + copies +
+          " --out m.ply --attack smooth:2 --attack flip --attack smooth:2 --json");
+  EXPECT_EQ(more.code, 0) << more.err;
+  const auto line = nlohmann::json::parse(more.out);
+  EXPECT_EQ(line["collusion"], "mix");
+  EXPECT_EQ(line["copies"], (std::vector<std::string>{"ada.obj", "ben.stl", "cem.obj"}));
+  EXPECT_EQ(line["attack"], "smooth:2+flip+smooth:2");
+  EXPECT_EQ(MeshFile::open(folder_ / "m.ply").format(), FileFormat::PlyLittle);
+}
+
+TEST_F(CliAttack, OfAWrongCollusionSaysWhatIsMeant) {
+  make_sample("a.obj", 500, 1);
+  make_sample("c.obj", 900, 1);
+  ASSERT_EQ(run("attack noise:0.1 a.obj b.obj").code, 0);
+  const std::string before = read_all(folder_ / "b.obj");
+  const auto refused = [&](const std::string& arguments, const std::string& reason) {
+    const test::CliResult result = run("attack --collude " + arguments);
+    EXPECT_EQ(result.code, 2) << arguments;
+    EXPECT_NE(result.err.find(reason), std::string::npos) << result.err;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+  };
+  refused("avarage a.obj b.obj --out o.obj", "did you mean average?");
+  refused("'' a.obj b.obj --out o.obj", "it is one of average, majority");
+  refused("average a.obj --out o.obj", "needs two copies or more, not 1");
+  refused("average a.obj b.obj", "give --out");
+  refused("average a.obj b.obj --out-dir o", "give --out, not --out-dir");
+  refused("average a.obj b.obj --out b.obj", "b.obj: is a copy itself, which is never overwritten");
+  refused("average a.obj c.obj --out o.obj", "c.obj: has ");
+  refused("average a.obj absent.obj --out o.obj", "absent.obj");
+  refused("average a.obj b.obj --out o.txt", "ends in .obj");
+  refused("average a.obj b.obj --out o.obj --protocol leaks", "alternatives");
+  refused("average a.obj b.obj --out o.obj --attack nosie:1", "did you mean noise?");
+  EXPECT_NE(run("attack none a.obj o.obj --out o.obj").err.find("--out is of --collude"),
+            std::string::npos);
+  EXPECT_FALSE(exists("o.obj"));
+  EXPECT_EQ(read_all(folder_ / "b.obj"), before);
+}
+
 TEST_F(CliAttack, SurvivePrintsATableAndWritesTheSameAsJsonAndCsv) {
   make_sample("a.obj", 6000, 1);
   make_sample("b.obj", 40, 2);

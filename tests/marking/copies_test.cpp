@@ -297,7 +297,7 @@ TEST_F(CopiesOfAFile, AreTracedToThoseWhoCombineThem) {
     copies.push_back({marking.positions, mesh.triangles});
   }
   for (const CollusionKind& kind : collusion_kinds()) {
-    const FileTrace found = trace(save(colluded(copies, kind, 1), "leak.obj"), options);
+    const FileTrace found = trace(save(colluded(copies, kind.collusion, 1), "leak.obj"), options);
     ASSERT_FALSE(found.names.empty());
     EXPECT_TRUE(TraceOptions{}.believes(found.names[0])) << kind.name;
     for (const Traced& traced : found.names) {
