@@ -58,14 +58,19 @@ std::vector<NamedFile> with_root(std::vector<fs::path> paths, const fs::path& ro
 std::vector<NamedFile> files_named(const std::string& name, const fs::path& outputs) {
   check_name(name);
   const fs::path path(name);
-  std::error_code ignored;
-  if (fs::is_directory(path, ignored)) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  // what cannot be looked at may be a folder, unless its name is a mesh's, which costs one record
+  if (status.type() == fs::file_type::none && !is_mesh_name(path)) {
+    throw Error(ErrorCode::Unreadable, path, "", error.message());
+  }
+  if (fs::is_directory(status)) {
     std::vector<fs::path> found = meshes_in_folder(path);
     leave_out_outputs(found, path, outputs);
     return with_root(std::move(found), path);
   }
   if (path.extension() == ".jsonl") return with_root(meshes_of_manifest(path), path.parent_path());
-  if (fs::exists(path, ignored) || name.find_first_of("*?[") == name.npos) {
+  if (fs::exists(status) || name.find_first_of("*?[") == name.npos) {
     return {{path, path.parent_path()}};
   }
   std::vector<fs::path> found = expand_glob(path);

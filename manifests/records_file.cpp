@@ -153,14 +153,18 @@ void RecordsFile::finish() {
   errno = 0;
   stream_.close();
   if (!stream_) fail_to_write(path_);
-  std::error_code ignored;
-  if (!fs::is_regular_file(path_, ignored)) return;
+  std::error_code error;
+  const fs::file_status status = fs::status(path_, error);
+  if (status.type() == fs::file_type::none) {
+    throw Error(ErrorCode::Unwritable, path_, "", "the records: " + error.message());
+  }
+  if (!fs::is_regular_file(status)) return;  // a pipe has its order
   std::ifstream stream(path_, std::ios::binary);
   if (!stream) fail_to_write(path_);
   const std::vector<Place> lines = sorted_lines(stream);
   std::uint64_t end = 0;  // of the lines so far, if they lie as they should
   for (const Place& line : lines) end = line.begin == end ? end + line.size + 1 : ~std::uint64_t{0};
-  if (end == fs::file_size(path_, ignored)) return;
+  if (end == fs::file_size(path_, error)) return;
   OutputFile sorted(path_);
   std::string text;
   stream.clear();
