@@ -345,7 +345,7 @@ Marking CopyPlan::copy(std::span<const std::uint8_t> name) const {
   if (found_) {
     Marking marking;
     marking.status = MarkStatus::AlreadyMarked;
-    marking.found = found_;
+    marking.found.emplace(*found_);
     return marking;
   }
   const FingerprintSeed seed = code_.seed_of(name);
