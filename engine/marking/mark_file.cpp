@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <new>
 
 #include "engine/base/error.h"
@@ -98,15 +99,27 @@ Encoding MarkedFile::encoding() const {
 }
 
 double fingerprint_evidence(const MarkedFile& marked, const Surface& surface,
-                            const std::optional<Mesh>& original, const Key& key,
-                            FluxEffort effort) {
+                            const std::optional<Mesh>& original, const Key& key, FluxEffort effort,
+                            const std::optional<WordFormat>& format) {
   MarkOptions options = marked.request.options;
   const FingerprintCode code = fingerprint_code(key, options);
   const FingerprintSeed seed = code.seed_of(marked.request.message());
   std::vector<ScoreTable> tables;
   if (!marked.needs_original) {
     if (!marked.flux) options.flux = LayerUse::No;
-    tables = read_fingerprints(surface, key, code, fingerprint_encodings(options), effort);
+    std::vector<Encoding> encodings = fingerprint_encodings(options);
+    double untried = 0;  // bits that readers pay for ways that are not tried here
+    if (format) {
+      const auto tried = static_cast<double>(encodings.size());
+      std::erase_if(encodings, [&](const Encoding& encoding) {
+        return encoding.scheme != kFluxScheme && encoding.format != *format;
+      });
+      untried =
+          std::log2(2 * tried / static_cast<double>(std::max<std::size_t>(1, encodings.size())));
+    }
+    tables = read_fingerprints(surface, key, code, encodings, effort,
+                               format ? ReadTurned::No : ReadTurned::Yes);
+    return evidence_of(tables, code, seed).bits - untried;
   } else if (original && original->positions.size() == surface.mesh.positions.size()) {
     const std::vector<Vec3>& positions = surface.mesh.positions;
     const std::vector<std::optional<Vec3>> seen(positions.begin(), positions.end());
@@ -352,7 +365,7 @@ bool FileMarking::reads_fingerprint(const Key& key) {
   const Marking& marking = work_->marking;
   const Readable written(work_->output->temporary_path());
   result_.evidence = fingerprint_evidence(result_, written.surface(), work_->mesh->file.mesh(), key,
-                                          FluxEffort::AsItIs);
+                                          FluxEffort::AsItIs, marking.format);
   result_.units_embedded = static_cast<std::uint32_t>(marking.carriers.size());
   if (result_.request.options.detail) result_.units = marking.carriers;
   if (result_.evidence >= kTraceable) return true;

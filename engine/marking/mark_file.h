@@ -103,11 +103,14 @@ struct MarkedFile {
 };
 
 // Returns the evidence, in bits, that a surface carries the fingerprint that was written: see
-// evidence_of(). A mark that needs the original leaves none without it, and none where the surface
-// has other points. Precondition: the status is Traceable, or may become it.
+// evidence_of(). `format` is that of its units if they are known to be read as they were written,
+// which is all that is then tried; readers pay for more, and so does the evidence. A mark that
+// needs the original leaves none without it, and none where the surface has other points.
+// Precondition: the status is Traceable, or may become it.
 [[nodiscard]] double fingerprint_evidence(const MarkedFile& marked, const Surface& surface,
                                           const std::optional<Mesh>& original, const Key& key,
-                                          FluxEffort effort);
+                                          FluxEffort effort,
+                                          const std::optional<WordFormat>& format = {});
 
 // The stages of marking one mesh, to be run in this order, from any thread, one at a time. They do
 // not throw: an error becomes the status of the result, and later stages then do nothing.

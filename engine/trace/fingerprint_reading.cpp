@@ -41,7 +41,7 @@ void add_unit_tables(std::span<const Reading> readings, const WordCode& words,
 }
 
 void add_encoding(const Surface& surface, const Key& key, const FingerprintCode& code,
-                  const Encoding& encoding, std::vector<ScoreTable>& tables) {
+                  const Encoding& encoding, ReadTurned turned, std::vector<ScoreTable>& tables) {
   const WordCode words(key, encoding.format);
   const auto scheme = make_scheme(encoding.scheme, words, encoding.scheme_options);
   const auto bound = scheme->bind(surface);
@@ -50,6 +50,7 @@ void add_encoding(const Surface& surface, const Key& key, const FingerprintCode&
                            std::to_string(format.subscript_bits) + " w" +
                            std::to_string(format.part_bits);
   add_unit_tables(bound->read(), words, code, what, tables);
+  if (turned == ReadTurned::No) return;
   for (const std::vector<Reading>& readings : bound->read_turned_over()) {
     add_unit_tables(readings, words, code, what + ", turned over", tables);
   }
@@ -79,7 +80,8 @@ WordFormat fingerprint_format(WordFormat format, int colluders) {
 
 std::vector<ScoreTable> read_fingerprints(const Surface& surface, const Key& key,
                                           const FingerprintCode& code,
-                                          std::span<const Encoding> encodings, FluxEffort effort) {
+                                          std::span<const Encoding> encodings, FluxEffort effort,
+                                          ReadTurned turned) {
   std::vector<ScoreTable> tables;
   bool has_flux = false;
   for (const Encoding& encoding : encodings) {
@@ -88,7 +90,7 @@ std::vector<ScoreTable> read_fingerprints(const Surface& surface, const Key& key
       continue;
     }
     check(encoding.format.part_bits <= kMostFingerprintBits, "a format of fingerprints");
-    add_encoding(surface, key, code, encoding, tables);
+    add_encoding(surface, key, code, encoding, turned, tables);
   }
   for (ScoreTable& table : tables) table.prior = -std::log2(static_cast<double>(tables.size()));
   if (has_flux) add_flux(surface, key, code, effort, tables);

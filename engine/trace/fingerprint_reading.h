@@ -19,14 +19,18 @@ inline constexpr int kMostFingerprintBits = 12;
 // value: between two copies lie the cells of both and nothing else.
 [[nodiscard]] WordFormat fingerprint_format(WordFormat format, int colluders);
 
+// Whether a surface is read turned over as well.
+enum class ReadTurned : std::uint8_t { No, Yes };
+
 // Returns the tables of all layers: what is read with each of the encodings, whose formats are
-// those of fingerprints, and of flux if one of them is; the surface as it is and turned over. The
-// priors of a layer's tables add up to one at most. O(triangles) for each encoding; flux with
-// FluxEffort::All about 80 times. Throws Error Usage for an unknown scheme.
+// those of fingerprints, and of flux if one of them is; the surface as it is and, if that is
+// wanted, turned over. The priors of a layer's tables add up to one at most. O(triangles) for each
+// encoding; flux with FluxEffort::All about 80 times. Throws Error Usage for an unknown scheme.
 [[nodiscard]] std::vector<ScoreTable> read_fingerprints(const Surface& surface, const Key& key,
                                                         const FingerprintCode& code,
                                                         std::span<const Encoding> encodings,
-                                                        FluxEffort effort);
+                                                        FluxEffort effort,
+                                                        ReadTurned turned = ReadTurned::Yes);
 
 // What speaks for one name in one layer.
 struct LayerEvidence {
