@@ -3,6 +3,8 @@
 #include <system_error>
 #include <utility>
 
+#include "engine/base/text.h"
+
 namespace triglyph {
 namespace {
 
@@ -11,7 +13,7 @@ std::string compose(const std::filesystem::path& path, const std::string& place,
   std::string text;
   if (!path.empty()) text += path.string() + ": ";
   if (!place.empty()) text += place + ": ";
-  return text + message;
+  return printable(text + message);  // a key or a name in it may hold line breaks
 }
 
 }  // namespace
