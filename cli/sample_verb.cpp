@@ -53,6 +53,8 @@ ExportFormat export_format(const SampleArguments& arguments) {
   if (arguments.format == "stl") {
     format.format = arguments.ascii ? FileFormat::StlAscii : FileFormat::StlBinary;
   }
+  if (arguments.format == "glb") format.format = FileFormat::Glb;
+  if (arguments.format == "gltf") format.format = FileFormat::Gltf;
   return format;
 }
 
@@ -98,8 +100,8 @@ void add_sample_verb(CLI::App& app, Action& action) {
       ->check(CLI::IsMember({"all", "closed", "open", "high-genus"}).description(""))
       ->type_name("all|closed|open|high-genus");
   verb->add_option("--format", arguments->format, "File format (default: obj)")
-      ->check(CLI::IsMember({"obj", "off", "ply", "stl"}).description(""))
-      ->type_name("obj|off|ply|stl");
+      ->check(CLI::IsMember({"obj", "off", "ply", "stl", "glb", "gltf"}).description(""))
+      ->type_name("obj|off|ply|stl|glb|gltf");
   verb->add_flag("--ascii", arguments->ascii, "Write PLY and STL as text instead of binary");
   arguments->machine.add_threads_to(*verb);
   verb->footer(

@@ -10,6 +10,7 @@
 #include "engine/base/output_file.h"
 #include "engine/base/text.h"
 #include "engine/io/file_bytes.h"
+#include "engine/io/gltf.h"
 
 namespace triglyph {
 namespace {
@@ -103,6 +104,14 @@ bool have_same_content(const fs::path& a, const fs::path& b) {
 std::vector<fs::path> companions_of(const fs::path& mesh) {
   const std::string ending = lower_case_ending(mesh);
   const bool is_obj = ending == ".obj";
+  if (ending == ".gltf" || ending == ".glb") {
+    std::vector<fs::path> images;
+    const FileBytes gltf = FileBytes::open(mesh);
+    for (const std::string& name : images_of_gltf(gltf.bytes(), mesh)) {
+      add_file(name, mesh.parent_path(), images);
+    }
+    return images;
+  }
   if (!is_obj && ending != ".ply") return {};
   const FileBytes file = FileBytes::open(mesh);
   std::string_view text(file.bytes().data(), file.bytes().size());

@@ -82,7 +82,8 @@ std::vector<NamedFile> files_named(const std::string& name, const fs::path& outp
 }  // namespace
 
 bool is_mesh_name(const fs::path& path) {
-  constexpr std::array<std::string_view, 4> kEndings = {".obj", ".off", ".ply", ".stl"};
+  constexpr std::array<std::string_view, 6> kEndings = {".obj", ".off", ".ply",
+                                                        ".stl", ".glb", ".gltf"};
   return std::find(kEndings.begin(), kEndings.end(), lower_case_ending(path)) != kEndings.end();
 }
 

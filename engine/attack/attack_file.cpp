@@ -22,8 +22,11 @@ FileFormat format_of(const std::filesystem::path& out, const std::filesystem::pa
   if (ending == ".off") return FileFormat::Off;
   if (ending == ".ply") return FileFormat::PlyLittle;
   if (ending == ".stl") return FileFormat::StlBinary;
-  throw Error(ErrorCode::Unsupported, out, "",
-              "a mesh's name ends in .obj, .off, .ply or .stl, not \"" + ending + "\"");
+  if (ending == ".glb") return FileFormat::Glb;
+  if (ending == ".gltf") return FileFormat::Gltf;
+  throw Error(
+      ErrorCode::Unsupported, out, "",
+      "a mesh's name ends in .obj, .off, .ply, .stl, .glb or .gltf, not \"" + ending + "\"");
 }
 
 // Names the file in what the attack refuses.

@@ -12,6 +12,7 @@
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
 #include "engine/io/byte_parts.h"
+#include "engine/io/gltf.h"
 #include "engine/io/readers.h"
 
 namespace triglyph {
@@ -204,6 +205,9 @@ std::vector<char> export_mesh(const Mesh& mesh, const ExportFormat& format) {
     case FileFormat::StlBinary:
       append_stl_binary(parts, mesh);
       break;
+    case FileFormat::Gltf:
+    case FileFormat::Glb:
+      return export_gltf(mesh, format.format == FileFormat::Glb);
   }
   return join(std::move(parts));
 }

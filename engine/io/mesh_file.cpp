@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -10,6 +11,7 @@
 #include "engine/base/parallel.h"
 #include "engine/io/byte_parts.h"
 #include "engine/io/file_bytes.h"
+#include "engine/io/gltf.h"
 #include "engine/io/number_text.h"
 #include "engine/io/readers.h"
 #include "engine/mesh/triangulate.h"
@@ -30,8 +32,16 @@ FileContent read_content(const Source& source) {
   if (ending == ".off") return read_off(source);
   if (ending == ".ply") return read_ply(source);
   if (ending == ".stl") return read_stl(source);
+  if (ending == ".glb" || ending == ".gltf") return read_gltf(source);
+  constexpr std::array kConvertible = {".3ds",  ".3mf",  ".abc",  ".blend", ".dae", ".fbx", ".usd",
+                                       ".usda", ".usdc", ".usdz", ".vrml",  ".wrl", ".x",   ".x3d"};
+  const bool is_known =
+      std::find(kConvertible.begin(), kConvertible.end(), ending) != kConvertible.end();
   throw Error(ErrorCode::Unsupported, source.path, "",
-              "unknown ending '" + ending + "' (known: .obj .off .ply .stl)");
+              is_known
+                  ? "'" + ending + "' is not read; export the mesh as .glb, .obj, .ply or .stl, " +
+                        "for example with Blender or assimp"
+                  : "unknown ending '" + ending + "' (known: .obj .off .ply .stl .gltf .glb)");
 }
 
 // Returns the number token at `begin`, which the reader has accepted.
@@ -50,6 +60,9 @@ struct MeshFile::Content {
   FileBytes file;
   std::vector<char> owned;  // instead of `file`, for files in memory
   std::span<const char> bytes;
+  std::vector<char> image;  // what `places` refers to, if not to `bytes`
+  std::string why_fixed;
+  std::shared_ptr<const GltfFile> gltf;
   FileFormat format = FileFormat::Obj;
   CoordinatePlaces places;
   std::array<NumberStyle, 3> learnt;          // the style of each axis, in text
@@ -71,6 +84,15 @@ struct MeshFile::Content {
                   std::vector<char>& out) const;
   void patch_binary(std::span<const Vec3> positions, std::size_t begin, std::size_t end,
                     char* out) const;
+  void patch_image(std::span<const Vec3> positions, char* out) const;
+  // Returns the value that vertex v has in the file once points lie at the positions.
+  [[nodiscard]] double stored(std::span<const Vec3> positions, std::size_t v, int axis) const {
+    const std::uint32_t point = point_of_vertex[v];
+    const double from = mesh.positions[point][axis], to = positions[point][axis];
+    return to == from ? from : round(to, axis);
+  }
+  [[nodiscard]] std::vector<BoundsChange> bounds_changes(std::span<const Vec3> positions) const;
+  [[nodiscard]] std::vector<char> patched_gltf(std::span<const Vec3> positions) const;
 };
 
 void MeshFile::Content::fill(const std::filesystem::path& path) {
@@ -81,6 +103,9 @@ void MeshFile::Content::fill(const std::filesystem::path& path) {
   }
   format = content.format;
   places = std::move(content.places);
+  image = std::move(content.image);
+  why_fixed = std::move(content.why_fixed);
+  gltf = std::move(content.gltf);
   face_count = content.faces.ends.size();
   Weld welded = weld(content.vertices);
   std::vector<Vec3>().swap(content.vertices);
@@ -164,6 +189,48 @@ void MeshFile::Content::patch_binary(std::span<const Vec3> positions, std::size_
   }
 }
 
+void MeshFile::Content::patch_image(std::span<const Vec3> positions, char* out) const {
+  parallel_blocks(
+      point_of_vertex.size(),
+      [&](std::size_t begin, std::size_t end) { patch_binary(positions, begin, end, out); },
+      kPatchBlock);
+}
+
+std::vector<BoundsChange> MeshFile::Content::bounds_changes(std::span<const Vec3> positions) const {
+  std::vector<BoundsChange> changes;
+  for (const GltfFile::Accessor& accessor : gltf->accessors) {
+    for (int axis = 0; axis < 3; ++axis) {
+      constexpr double kInfinity = std::numeric_limits<double>::infinity();
+      double before[2] = {kInfinity, -kInfinity}, after[2] = {kInfinity, -kInfinity};
+      for (std::size_t v = accessor.first; v < accessor.first + accessor.count; ++v) {
+        const double from = mesh.positions[point_of_vertex[v]][axis];
+        const double to = stored(positions, v, axis);
+        before[0] = std::min(before[0], from);
+        before[1] = std::max(before[1], from);
+        after[0] = std::min(after[0], to);
+        after[1] = std::max(after[1], to);
+      }
+      for (int end = 0; end < 2; ++end) {
+        if (before[end] == after[end]) continue;
+        changes.push_back({accessor.index, axis, end == 1, after[end]});
+      }
+    }
+  }
+  return changes;
+}
+
+std::vector<char> MeshFile::Content::patched_gltf(std::span<const Vec3> positions) const {
+  const std::vector<BoundsChange> changes = bounds_changes(positions);
+  if (!image.empty()) {
+    std::vector<char> moved = image;
+    patch_image(positions, moved.data());
+    return rewritten_gltf(*gltf, moved, bytes.size(), changes).bytes;
+  }
+  RewrittenGltf out = rewritten_gltf(*gltf, bytes, bytes.size(), changes);
+  patch_image(positions, out.bytes.data() + out.shift);
+  return std::move(out.bytes);
+}
+
 std::string_view name_of(FileFormat format) noexcept {
   switch (format) {
     case FileFormat::Obj:
@@ -180,6 +247,10 @@ std::string_view name_of(FileFormat format) noexcept {
       return "stl ascii";
     case FileFormat::StlBinary:
       return "stl binary";
+    case FileFormat::Gltf:
+      return "gltf";
+    case FileFormat::Glb:
+      return "glb";
   }
   return "unknown";
 }
@@ -211,6 +282,9 @@ FileFormat MeshFile::format() const {
 }
 std::span<const char> MeshFile::bytes() const {
   return content_->bytes;
+}
+const std::string& MeshFile::why_fixed() const {
+  return content_->why_fixed;
 }
 std::size_t MeshFile::vertex_count() const {
   return content_->point_of_vertex.size();
@@ -273,15 +347,14 @@ std::vector<char> MeshFile::patched(std::span<const Vec3> positions) const {
     return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
   });
   check(is_finite, "positions are finite");
+  if (!content.why_fixed.empty()) {
+    throw Error(ErrorCode::Unsupported, {}, "", content.why_fixed);
+  }
+  if (content.gltf) return content.patched_gltf(positions);
   const std::size_t count = content.point_of_vertex.size();
   if (!content.places.is_text || count == 0) {
     std::vector<char> out(content.bytes.begin(), content.bytes.end());
-    parallel_blocks(
-        count,
-        [&](std::size_t begin, std::size_t end) {
-          content.patch_binary(positions, begin, end, out.data());
-        },
-        kPatchBlock);
+    content.patch_image(positions, out.data());
     return out;
   }
   std::vector<std::vector<char>> parts((count + kPatchBlock - 1) / kPatchBlock);

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -15,17 +16,17 @@
 
 namespace triglyph {
 
-enum class FileFormat { Obj, Off, PlyAscii, PlyLittle, PlyBig, StlAscii, StlBinary };
+enum class FileFormat { Obj, Off, PlyAscii, PlyLittle, PlyBig, StlAscii, StlBinary, Gltf, Glb };
 
 // Returns the stable name that records use ("ply binary_little_endian").
 [[nodiscard]] std::string_view name_of(FileFormat format) noexcept;
 
 class MeshFile {
  public:
-  // Maps the file and reads it in one pass. The extension (.obj, .off, .ply, .stl in any case)
-  // names the format; ASCII and binary variants are recognised by their structure. Throws Error:
-  // Unreadable (does not exist, no permission, not a regular file, empty), Malformed (with line or
-  // byte), Unsupported (unknown extension or variant). O(bytes).
+  // Maps the file and reads it in one pass. The extension (.obj, .off, .ply, .stl, .gltf, .glb in
+  // any case) names the format; ASCII and binary variants are recognised by their structure. Throws
+  // Error: Unreadable (does not exist, no permission, not a regular file, empty), Malformed (with
+  // line or byte), Unsupported (unknown extension or variant). O(bytes).
   [[nodiscard]] static MeshFile open(const std::filesystem::path& path);
 
   // Reads a file that is in memory. `name` supplies the extension and appears in messages. Throws
@@ -38,6 +39,10 @@ class MeshFile {
 
   [[nodiscard]] FileFormat format() const;
   [[nodiscard]] std::span<const char> bytes() const;
+
+  // Returns why no coordinate of the file can be changed, such as a compressed buffer, with the way
+  // out; empty if all can.
+  [[nodiscard]] const std::string& why_fixed() const;
 
   // Returns the number of coordinate triples in the file; in STL, three per face.
   [[nodiscard]] std::size_t vertex_count() const;
@@ -78,8 +83,10 @@ class MeshFile {
 
   // Returns the bytes of the file with point i moved to positions[i]. A coordinate that rounds to
   // its old value keeps its bytes; every other one reads back as that of round(positions[i]).
-  // Precondition: positions.size() == mesh().positions.size(), all finite. O(bytes).
-  // note: the triangulation of polygons depends on positions, so it can differ after reading back.
+  // In glTF, the least and the greatest coordinates that an accessor states change along. Throws
+  // Error Unsupported if why_fixed(). Precondition: positions.size() == mesh().positions.size(),
+  // all finite. O(bytes). note: the triangulation of polygons depends on positions, so it can
+  // differ after reading back.
   [[nodiscard]] std::vector<char> patched(std::span<const Vec3> positions) const;
 
  private:

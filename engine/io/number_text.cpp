@@ -126,9 +126,19 @@ char* print_scientific(const NumberStyle& style, double value, int precision, ch
   char* p = std::copy(text, exponent, out);
   if (style.trims_zeros) p = trim_zeros(style, out, p);
   *p++ = style.has_upper_exponent ? 'E' : 'e';
-  *p++ = exponent[1];
-  for (auto have = end - exponent - 2; have < style.exponent_digits; ++have) *p++ = '0';
-  return std::copy(exponent + 2, end, p);
+  if (exponent[1] == '-' || style.has_plus_exponent) *p++ = exponent[1];
+  const char* digits = exponent + 2;  // at least two of them
+  while (end - digits > style.exponent_digits && *digits == '0') ++digits;
+  for (auto have = end - digits; have < style.exponent_digits; ++have) *p++ = '0';
+  return std::copy(digits, static_cast<const char*>(end), p);
+}
+
+// Puts a plus before a number without a sign, where the style has one.
+char* with_sign(const NumberStyle& style, char* begin, char* end) {
+  if (!style.has_plus_sign || *begin == '-') return end;
+  std::memmove(begin + 1, begin, static_cast<std::size_t>(end - begin));
+  *begin = '+';
+  return end + 1;
 }
 
 // The properties of one token.
@@ -143,6 +153,9 @@ struct TokenShape {
   bool starts_with_point = false;
   bool has_zero_before_point = false;
   bool has_upper_exponent = false;
+  bool has_plus_exponent = false;
+  bool has_minus_exponent = false;
+  int power = 0;  // of ten, of the first digit
 };
 
 TokenShape shape_of(std::string_view token) {
@@ -166,6 +179,8 @@ TokenShape shape_of(std::string_view token) {
   if (mark != std::string_view::npos) {
     std::string_view power = token.substr(mark + 1);
     shape.has_upper_exponent = token[mark] == 'E';
+    shape.has_plus_exponent = power[0] == '+';
+    shape.has_minus_exponent = power[0] == '-';
     if (power[0] == '+') power.remove_prefix(1);
     std::from_chars(power.data(), power.data() + power.size(), exponent);
     if (power[0] == '-') power.remove_prefix(1);
@@ -173,8 +188,69 @@ TokenShape shape_of(std::string_view token) {
   }
   const auto fraction_size = static_cast<std::int64_t>(fraction.size());
   if (shape.is_zero) exponent = 0;
+  const std::size_t first = mantissa.find_first_of("123456789");
+  if (first != std::string_view::npos) {
+    const auto whole = static_cast<std::int64_t>(std::min(point, mantissa.size()));
+    const auto at = static_cast<std::int64_t>(first);
+    const std::int64_t power = exponent + (at < whole ? whole - at - 1 : whole - at);
+    shape.power = static_cast<int>(std::clamp<std::int64_t>(power, -400, 400));
+  }
   shape.decimals = static_cast<int>(std::clamp<std::int64_t>(fraction_size - exponent, 0, 340));
   return shape;
+}
+
+// The powers of ten that numbers of one kind have.
+struct PowerRange {
+  int least = 1000, most = -1000;
+  void add(int power) {
+    least = std::min(least, power);
+    most = std::max(most, power);
+  }
+  [[nodiscard]] bool has() const { return most >= least; }
+};
+
+// Chooses the powers of ten that have no exponent in General notation as a known writer does it,
+// or, where none fits, as the numbers themselves say.
+void choose_plain_powers(NumberStyle& style, const PowerRange& plain, const PowerRange& small,
+                         const PowerRange& large) {
+  const auto fits = [&](int least, int most) {
+    return (!plain.has() || (plain.least >= least && plain.most < most)) &&
+           (!small.has() || small.most < least) && (!large.has() || large.least >= most);
+  };
+  struct Writer {
+    int least, most;
+    bool pads, is_upper;
+  };
+  const Writer writers[] = {
+      {-4, style.significant, true, false},  // %g
+      {-4, style.significant, true, true},   // %G
+      {-4, 16, true, false},                 // Python
+      {-5, 15, true, true},                  // C#
+      {-3, 7, false, true},                  // Java
+      {-6, 21, false, false},                // JavaScript
+      {-4, style.significant, false, false},
+      {-4, 16, false, false},
+      {-5, 16, false, false},  // Rust, {:?}
+  };
+  const bool pads = style.exponent_digits > 1;
+  for (const bool strictly : {true, false}) {
+    for (const Writer& writer : writers) {
+      const bool is_alike = writer.pads == pads && writer.is_upper == style.has_upper_exponent;
+      if ((strictly && !is_alike) || !fits(writer.least, writer.most)) continue;
+      style.least_plain_power = writer.least;
+      style.most_plain_power = writer.most;
+      return;
+    }
+  }
+  if (small.has()) style.least_plain_power = small.most + 1;
+  style.most_plain_power = large.has() ? large.least : 400;
+}
+
+// Returns whether the style gives the number, which is not zero, an exponent.
+bool has_exponent(const NumberStyle& style, double value) {
+  if (style.notation != Notation::General) return style.notation == Notation::Scientific;
+  const int power = integer_digits(std::abs(value)) - 1;
+  return power < style.least_plain_power || power >= style.most_plain_power;
 }
 
 }  // namespace
@@ -227,10 +303,18 @@ NumberStyle learn_style(std::span<const std::string_view> tokens) {
   NumberStyle style;
   style.significant = 0;
   std::size_t exponents = 0, numbers = 0, bare_points = 0, zero_points = 0;
+  std::size_t pluses = 0, minuses = 0, plain_powers = 0;
   bool has_trailing_zero = false, same_decimals = true;
   int first_decimals = -1;
+  PowerRange plain, small, large;
   for (const std::string_view token : tokens) {
     const TokenShape shape = shape_of(token);
+    pluses += !token.empty() && token[0] == '+';
+    minuses += !token.empty() && token[0] == '-';
+    if (!shape.is_zero)
+      (shape.exponent_digits == 0 ? plain : shape.power < 0 ? small : large).add(shape.power);
+    plain_powers +=
+        shape.exponent_digits > 0 && !shape.has_plus_exponent && !shape.has_minus_exponent;
     style.decimals = std::max(style.decimals, shape.decimals);
     style.significant = std::max(style.significant, shape.significant);
     style.keeps_point_zero |= shape.has_point_zero;
@@ -253,8 +337,13 @@ NumberStyle learn_style(std::span<const std::string_view> tokens) {
                    (has_trailing_zero || tokens.size() > kMinFixedTokens);
   style.trims_zeros = !has_trailing_zero && !style.is_fixed;
   style.drops_leading_zero = bare_points > zero_points;
-  if (exponents > 0)
+  style.has_plus_exponent = plain_powers == 0 && style.exponent_digits > 1;
+  if (large.has() && plain_powers == 0) style.has_plus_exponent = true;
+  style.has_plus_sign = pluses > 0 && pluses + minuses == tokens.size();
+  if (exponents > 0) {
     style.notation = exponents == numbers ? Notation::Scientific : Notation::General;
+    choose_plain_powers(style, plain, small, large);
+  }
   return style;
 }
 
@@ -272,7 +361,9 @@ int decimals_at(const NumberStyle& style, double value) {
 double step_at(const NumberStyle& style, double value) {
   const double magnitude = std::abs(value);
   double step = 0;
-  if (style.notation == Notation::Scientific && value != 0) {
+  const bool counts_digits =
+      style.notation == Notation::Scientific || (magnitude >= 1 && has_exponent(style, magnitude));
+  if (value != 0 && counts_digits) {
     step = std::pow(10.0, integer_digits(magnitude) - style.significant);
   } else {
     const int decimals = decimals_at(style, value);
@@ -283,7 +374,8 @@ double step_at(const NumberStyle& style, double value) {
 }
 
 double round_to(const NumberStyle& style, double value) {
-  if (style.notation != Notation::Scientific) {
+  if (style.notation == Notation::Fixed ||
+      (style.notation == Notation::General && !has_exponent(style, value * 1.1))) {
     const int decimals = decimals_at(style, value);
     if (const auto scaled = scaled_integer(std::abs(value), decimals)) {
       const double rounded = static_cast<double>(*scaled) / kPower[decimals];
@@ -299,19 +391,31 @@ double round_to(const NumberStyle& style, double value) {
 char* format_number(const NumberStyle& style, double value, char* out) {
   if (style.notation == Notation::Scientific) {
     char* end = print_scientific(style, value, style.significant - 1, out);
-    if (parse_number(out, end).end != nullptr) return end;
-    return print_scientific(style, value, kMaxSignificant - 1, out);  // rounded up past the largest
+    if (parse_number(out, end).end == nullptr) {  // rounded up past the largest
+      end = print_scientific(style, value, kMaxSignificant - 1, out);
+    }
+    return with_sign(style, out, end);
   }
   const int decimals = decimals_at(style, value);
-  if (style.notation == Notation::General && value != 0 && std::abs(value) < 1e-4) {
+  if (style.notation == Notation::General && value != 0) {
+    // What the number is rounded to decides how it is written.
     char text[kNumberCapacity];
-    const char* end = print_fixed(value, decimals, text);
-    const double rounded = parse_number(text, end).value;
-    const int digits = rounded == 0 ? 1 : integer_digits(std::abs(rounded));
-    if (digits < -3)
-      return print_scientific(style, rounded, std::max(decimals + digits - 1, 0), out);
+    const int digits = integer_digits(std::abs(value));
+    if (digits >= style.most_plain_power) {
+      char* end = print_scientific(style, value, style.significant - 1, out);
+      const double rounded = parse_number(out, end).value;
+      if (has_exponent(style, rounded)) return with_sign(style, out, end);
+    } else {
+      const char* end = print_fixed(value, decimals, text);
+      const double rounded = parse_number(text, end).value;
+      const int left = rounded == 0 ? 1 : integer_digits(std::abs(rounded));
+      if (left - 1 < style.least_plain_power) {
+        return with_sign(style, out,
+                         print_scientific(style, rounded, std::max(decimals + left - 1, 0), out));
+      }
+    }
   }
-  return finish_fixed(style, out, print_fixed(value, decimals, out));
+  return with_sign(style, out, finish_fixed(style, out, print_fixed(value, decimals, out)));
 }
 
 std::string show_token(const char* begin, const char* end) {

@@ -22,7 +22,7 @@ struct ParsedNumber {
 
 enum class Notation {
   Fixed,       // 0.0000123
-  General,     // like %g: an exponent only below 1e-4
+  General,     // like %g: an exponent only of small and of large numbers
   Scientific,  // every number has an exponent
 };
 
@@ -37,6 +37,12 @@ struct NumberStyle {
   Notation notation = Notation::Fixed;
   int exponent_digits = 2;          // fewest digits of an exponent
   bool has_upper_exponent = false;  // 1E-5
+  bool has_plus_exponent = true;    // 1e+6, not 1e6
+  bool has_plus_sign = false;       // +1.5
+  // In General notation, numbers of a power of ten below the least or from the most on have an
+  // exponent: %g from -4 to its digits, Java -3 to 7, JavaScript -6 to 21.
+  int least_plain_power = -4;
+  int most_plain_power = 400;
 
   bool operator==(const NumberStyle&) const = default;
 };

@@ -83,7 +83,8 @@ class HeaderReader {
   std::vector<std::string_view> next_line() {
     ++line_;
     const std::string_view text(source_.bytes.data(), source_.bytes.size());
-    const std::size_t end = text.find('\n', at_);
+    if (line_ == 1) learn_line_end(text);
+    const std::size_t end = text.find(line_end_, at_);
     const std::string_view line = text.substr(at_, end - at_);
     auto words = split(line);
     if (end == std::string_view::npos) {
@@ -92,6 +93,14 @@ class HeaderReader {
     }
     at_ = std::min(end, text.size() - 1) + 1;
     return words;
+  }
+
+  // Takes a carriage return as the line end where no line feed follows the first one. Whether
+  // binary data begin behind one or two bytes is then certain, whatever value its first byte has.
+  void learn_line_end(std::string_view text) {
+    const std::size_t first = text.find_first_of("\r\n");
+    if (first == std::string_view::npos || text[first] == '\n') return;
+    if (first + 1 < text.size() && text[first + 1] != '\n') line_end_ = '\r';
   }
 
   void read_format(const std::vector<std::string_view>& words) {
@@ -161,6 +170,7 @@ class HeaderReader {
   PlyHeader header_;
   std::size_t at_ = 0;
   std::size_t line_ = 0;
+  char line_end_ = '\n';
   bool has_format_ = false;
 };
 

@@ -50,9 +50,7 @@ class ObjReader {
   // Returns the position behind a backslash that joins this line with the next, which counts as
   // blank.
   [[nodiscard]] const char* behind_continuation(const char* p) const noexcept {
-    if (*p++ != '\\') return nullptr;
-    if (p != scan_.end() && *p == '\r' && scan_.line_end() == '\n') ++p;
-    return p != scan_.end() && *p == scan_.line_end() ? p + 1 : nullptr;
+    return *p == '\\' ? scan_.behind_line_end(p + 1) : nullptr;
   }
 
   void skip_blanks() noexcept {
@@ -69,10 +67,9 @@ class ObjReader {
     while (true) {
       const char* begin = scan_.position();
       scan_.skip_line();
-      const char* last = scan_.position() - 1;  // the line end, if there is one
-      if (last <= begin || *last != scan_.line_end()) return;
-      if (last[-1] == '\r' && last - 1 > begin && scan_.line_end() == '\n') --last;
-      if (last[-1] != '\\') return;
+      const char* last = scan_.position();
+      while (last > begin && TextScan::is_line_end(last[-1])) --last;
+      if (last == scan_.position() || last == begin || last[-1] != '\\') return;
       // Comments are not continued: some end with a Windows path.
       if (std::memchr(begin, '#', static_cast<std::size_t>(last - begin)) != nullptr) return;
     }
@@ -99,11 +96,13 @@ class ObjReader {
       if (scan_.at_line_end() || scan_.here() == '#') break;
       faces.corners.push_back(take_corner());
     }
-    if (faces.corners.size() - first < 3) {
+    const std::size_t corners = faces.corners.size() - first;
+    if (corners == 0) {
       scan_.move_to(line);
-      scan_.fail("a face needs three corners, found " +
-                 std::to_string(faces.corners.size() - first));
+      scan_.fail("a face without corners");
     }
+    if (corners < 3)
+      return faces.corners.resize(first);          // a point or a line, which other tools read
     if (faces.corners.size() > kMaxCount) return;  // refused at the end
     faces.ends.push_back(static_cast<std::uint32_t>(faces.corners.size()));
   }

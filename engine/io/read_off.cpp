@@ -1,6 +1,9 @@
-// Object File Format (OFF) of Geomview, text only. Each vertex and each face takes one line, since
-// only the line separates the numbers of the format from those that a variant adds.
+// Object File Format (OFF) of Geomview, text only. The coordinates of a vertex and the corners of a
+// face may take several lines; what follows them on their last line is of a variant (colours,
+// normals, texture coordinates) and stays as it is.
+#include <algorithm>
 #include <string>
+#include <string_view>
 
 #include "engine/base/error.h"
 #include "engine/io/readers.h"
@@ -46,30 +49,42 @@ class OffReader {
     const char* start = scan_.position();
     if (scan_.at_end()) scan_.fail("neither the keyword OFF nor counts");
     std::string_view keyword = scan_.take_token();
-    const bool is_number = (*start >= '0' && *start <= '9') || *start == '-' || *start == '+';
-    if (is_number && !keyword.starts_with("4OFF") && !keyword.starts_with("4nOFF")) {
-      return scan_.move_to(start);
-    }
-    const auto skip = [&](std::string_view prefix) {
-      const bool has = keyword.starts_with(prefix);
-      if (has) keyword.remove_prefix(prefix.size());
-      return has;
-    };
-    skip("ST");
-    skip("C");
-    skip("N");
-    const bool is_homogeneous = skip("4"), is_general = skip("n");
-    if (!skip("OFF") || (!keyword.empty() && keyword[0] != '#')) {
+    const std::size_t off = find_off(keyword);
+    if (off == std::string_view::npos) {
       scan_.move_to(start);
+      // Without a keyword the file starts with its counts.
+      if ((*start >= '0' && *start <= '9') || *start == '-' || *start == '+') return;
       scan_.fail_at("expected the keyword OFF");
     }
-    if (!keyword.empty()) scan_.move_to(keyword.data());
-    if (is_homogeneous || is_general)
-      refuse(is_general ? "points of any dimension (nOFF)" : "homogeneous coordinates (4OFF)");
+    std::string_view prefixes = keyword.substr(0, off);
+    while (!prefixes.empty()) {
+      const bool is_texture = prefixes.starts_with("ST") || prefixes.starts_with("st");
+      const char c = prefixes[0];
+      if (c == '4') refuse("homogeneous coordinates (4OFF)");
+      // Lower case means another dimension only where the keyword itself is in capitals.
+      if (c == 'n' && keyword[off] == 'O') refuse("points of any dimension (nOFF)");
+      if (!is_texture && c != 'C' && c != 'N' && c != 'c' && c != 'n') {
+        scan_.move_to(start);
+        scan_.fail_at("expected the keyword OFF");
+      }
+      prefixes.remove_prefix(is_texture ? 2 : 1);
+    }
+    // Counts or a comment may follow without a blank.
+    scan_.move_to(keyword.data() + off + 3);
     scan_.skip_blanks();
     const char* next = scan_.position();
     if (scan_.take_token() == "BINARY") refuse("OFF BINARY");
     scan_.move_to(next);
+  }
+
+  // Returns where the letters "OFF" or "off" stand in the keyword, behind its prefixes in any
+  // order.
+  static std::size_t find_off(std::string_view keyword) {
+    const std::size_t at = std::min(keyword.find("OFF"), keyword.find("off"));
+    if (at > 6) return std::string_view::npos;  // further than all prefixes take
+    const std::string_view rest = keyword.substr(at + 3);
+    const bool ends = rest.empty() || rest[0] == '#' || (rest[0] >= '0' && rest[0] <= '9');
+    return ends ? at : std::string_view::npos;
   }
 
   [[noreturn]] void refuse(const std::string& variant) const {
@@ -90,7 +105,7 @@ class OffReader {
     const char* start[3];
     Vec3 point;
     for (int axis = 0; axis < 3; ++axis) {
-      scan_.skip_blanks();
+      scan_.skip_space(true);
       start[axis] = scan_.position();
       point[axis] = scan_.take_number();
     }
@@ -105,7 +120,7 @@ class OffReader {
     const auto vertices = static_cast<std::int64_t>(content_.vertices.size());
     const std::int64_t corners = scan_.take_integer("the number of corners", 0, kMaxCount);
     for (std::int64_t i = 0; i < corners; ++i) {
-      scan_.skip_blanks();
+      scan_.skip_space(true);
       faces.corners.push_back(
           static_cast<std::uint32_t>(scan_.take_integer("a vertex index", 0, vertices - 1)));
     }

@@ -39,19 +39,17 @@ class AsciiReader {
     content_.format = FileFormat::StlAscii;
     expect("solid");
     scan_.skip_line();
+    // Several solids follow each other; some writers leave out 'endsolid', or write "solid" twice.
     while (true) {
       scan_.skip_space(false);
-      if (scan_.at_end()) scan_.fail("the file ends before 'endsolid'");
+      if (scan_.at_end()) break;
       const char* start = scan_.position();
       const std::string_view token = scan_.take_token();
       if (is_word(token, "facet")) {
         read_facet();
-      } else if (is_word(token, "endsolid")) {
-        scan_.skip_line();
-        scan_.skip_space(false);
-        if (scan_.at_end()) break;
-        expect("solid");
-        scan_.skip_line();
+      } else if (is_word(token, "endsolid") || is_word(token, "end") || is_word(token, "solid") ||
+                 is_word(token, "color")) {
+        scan_.skip_line();  // a name, or a colour
       } else {
         scan_.move_to(start);
         scan_.fail_at("expected 'facet' or 'endsolid'");
@@ -83,8 +81,19 @@ class AsciiReader {
       expect("vertex");
       read_corner();
     }
-    expect("endloop");
-    expect("endfacet");
+    expect_end("loop");
+    expect_end("facet");
+  }
+
+  // Takes "endloop" and also "end loop".
+  void expect_end(std::string_view what) {
+    scan_.skip_space(false);
+    const char* start = scan_.position();
+    const std::string_view token = scan_.take_token();
+    if (is_word(token, "end")) return expect(what);
+    if (is_word(token, "end" + std::string(what))) return;
+    scan_.move_to(start);
+    scan_.fail_at("expected 'end" + std::string(what) + "'");
   }
 
   void read_corner() {
@@ -129,32 +138,51 @@ FileContent read_binary(const Source& source, std::uint64_t facets) {
   return content;
 }
 
-// Returns whether the bytes follow the text grammar up to the first facet or the end of an empty
-// solid.
+// Returns whether the bytes begin with "solid" and are text as far as the first facets reach, or
+// the end of an empty solid. A binary file may begin with "solid", but holds bytes that text has
+// not: the count of its facets alone has a zero byte, unless it is above 16 million.
 bool looks_like_text(const Source& source) {
+  constexpr std::size_t kLooked = 1024;
+  const std::string_view start(source.bytes.data(), std::min(source.bytes.size(), kLooked));
+  const auto is_control = [](char c) {
+    return static_cast<unsigned char>(c) < 32 && (c < '\t' || c > '\r');
+  };
+  if (std::any_of(start.begin(), start.end(), is_control)) return false;
   TextScan scan(source);
   scan.skip_space(false);
-  if (!is_word(scan.take_token(), "solid")) return false;
-  scan.skip_line();
-  scan.skip_space(false);
-  const std::string_view next = scan.take_token();
-  return is_word(next, "facet") || is_word(next, "endsolid");
+  return is_word(scan.take_token(), "solid");
+}
+
+// Returns the number of facets behind the header. The count is wrong in some files: it may have
+// been left at zero, set to the largest number by a writer that did not know it, or stem from a
+// part of the facets. Facets that it leaves out are part of the surface, as other tools read them,
+// as long as nothing but whole facets of finite coordinates is left.
+std::uint64_t facets_of(const Source& source, std::uint64_t claimed) {
+  const std::uint64_t room = (source.bytes.size() - kHeader) / kFacet;
+  const bool is_whole = (source.bytes.size() - kHeader) % kFacet == 0;
+  if (claimed == 0xffffffff && is_whole) return room;
+  if (claimed >= room || !is_whole) return claimed;
+  for (std::uint64_t facet = claimed; facet < room; ++facet) {
+    const std::uint64_t corners = kHeader + facet * kFacet + 12;
+    for (std::uint64_t i = 0; i < 9; ++i) {
+      const char* number = source.bytes.data() + corners + 4 * i;
+      if (!std::isfinite(load(number, Scalar::Float32, false))) return claimed;
+    }
+  }
+  return room;
 }
 
 }  // namespace
 
 FileContent read_stl(const Source& source) {
   const std::size_t size = source.bytes.size();
-  std::uint64_t facets = 0;
-  if (size >= kHeader) {
-    facets = static_cast<std::uint64_t>(load(source.bytes.data() + 80, Scalar::UInt32, false));
-    if (size == kHeader + kFacet * facets) return read_binary(source, facets);
-  }
   if (looks_like_text(source)) return AsciiReader(source).read();
   if (size < kHeader) {
     throw Error(ErrorCode::Malformed, source.path, at_byte(size),
                 "neither an ascii STL ('solid', then 'facet') nor the 84 bytes of a binary one");
   }
+  const std::uint64_t facets = facets_of(
+      source, static_cast<std::uint64_t>(load(source.bytes.data() + 80, Scalar::UInt32, false)));
   if (size < kHeader + kFacet * facets) {
     throw Error(ErrorCode::Malformed, source.path, at_byte(size),
                 "the file ends inside the " + std::to_string(facets) + " facets it announces");

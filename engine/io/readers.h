@@ -6,7 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "engine/geometry/vec3.h"
@@ -63,11 +65,18 @@ struct CoordinatePlaces {
   }
 };
 
+struct GltfFile;
+
 struct FileContent {
   FileFormat format = FileFormat::Obj;
   std::vector<Vec3> vertices;
   Faces faces;
   CoordinatePlaces places;
+  // Of a format that keeps coordinates in encoded or in other files: the file's bytes and behind
+  // them the decoded ones, which `places` then refers to. Empty: `places` refers to the file.
+  std::vector<char> image;
+  std::string why_fixed;                 // why no coordinate can be changed; empty: all can
+  std::shared_ptr<const GltfFile> gltf;  // of glTF alone
 };
 
 // Read one format in one pass. Memory is bounded by a fixed multiple of the file's size, whatever
@@ -76,6 +85,7 @@ struct FileContent {
 [[nodiscard]] FileContent read_off(const Source& source);
 [[nodiscard]] FileContent read_ply(const Source& source);
 [[nodiscard]] FileContent read_stl(const Source& source);
+[[nodiscard]] FileContent read_gltf(const Source& source);  // .gltf and .glb
 
 [[nodiscard]] std::size_t size_of(Scalar scalar) noexcept;  // in bytes
 [[nodiscard]] bool is_integer(Scalar scalar) noexcept;

@@ -15,18 +15,24 @@ TextScan::TextScan(const Source& source)
                 "text in UTF-16 (only ASCII and UTF-8 are read)");
   }
   if (text.starts_with(kByteOrderMark)) p_ += kByteOrderMark.size();
-  if (text.find('\n') == std::string_view::npos && text.find('\r') != std::string_view::npos) {
-    eol_ = '\r';
-  }
+  has_carriage_returns_ = text.find('\r') != std::string_view::npos;
 }
 
 void TextScan::skip_line() noexcept {
-  if (p_ != end_ && *p_ == eol_) {
-    ++p_;
-    return;
+  if (p_ == end_) return;
+  const void* feed = *p_ == '\n' ? p_ : std::memchr(p_, '\n', bytes_left());
+  const char* stop = feed == nullptr ? end_ : static_cast<const char*>(feed);
+  if (has_carriage_returns_) {
+    const void* back = std::memchr(p_, '\r', static_cast<std::size_t>(stop - p_));
+    if (back != nullptr) stop = static_cast<const char*>(back);
   }
-  const void* eol = p_ == end_ ? nullptr : std::memchr(p_, eol_, bytes_left());
-  p_ = eol == nullptr ? end_ : static_cast<const char*>(eol) + 1;
+  p_ = stop == end_ ? end_ : behind_line_end(stop);
+}
+
+const char* TextScan::behind_line_end(const char* position) const noexcept {
+  if (position == end_ || !is_line_end(*position)) return nullptr;
+  const bool is_pair = *position == '\r' && end_ - position > 1 && position[1] == '\n';
+  return position + (is_pair ? 2 : 1);
 }
 
 void TextScan::skip_space(bool comments) noexcept {
@@ -68,9 +74,12 @@ std::int64_t TextScan::take_integer(std::string_view what, std::int64_t low, std
 }
 
 void TextScan::fail(const std::string& message) const {
-  const auto lines = std::count(source_.bytes.data(), p_, eol_);
-  throw Error(ErrorCode::Malformed, source_.path, at_line(static_cast<std::size_t>(lines) + 1),
-              message);
+  std::size_t lines = 0;
+  for (const char* p = source_.bytes.data(); p < p_; ++p) {
+    // A pair counts at its line feed.
+    lines += *p == '\n' || (*p == '\r' && (p + 1 == end_ || p[1] != '\n'));
+  }
+  throw Error(ErrorCode::Malformed, source_.path, at_line(lines + 1), message);
 }
 
 void TextScan::fail_at(const std::string& message) const {

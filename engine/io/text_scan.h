@@ -16,19 +16,20 @@ inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 class TextScan {
  public:
-  // Starts behind a UTF-8 byte order mark, if there is one. Lines end at line feeds, or at carriage
-  // returns in a file without any line feed. Throws Error Unsupported for UTF-16.
+  // Starts behind a UTF-8 byte order mark, if there is one. Lines end at a line feed, a carriage
+  // return, or both in this order, as some files mix them. Throws Error Unsupported for UTF-16.
   explicit TextScan(const Source& source);
 
   [[nodiscard]] bool at_end() const noexcept { return p_ == end_; }
-  [[nodiscard]] bool at_line_end() const noexcept { return p_ == end_ || *p_ == eol_; }
+  [[nodiscard]] bool at_line_end() const noexcept { return p_ == end_ || is_line_end(*p_); }
   [[nodiscard]] char here() const noexcept { return *p_; }  // precondition: !at_end()
   [[nodiscard]] const char* position() const noexcept { return p_; }
   [[nodiscard]] const char* end() const noexcept { return end_; }
   void move_to(const char* position) noexcept { p_ = position; }
 
-  [[nodiscard]] bool is_blank(char c) const noexcept {
-    return c == ' ' || (c >= '\t' && c <= '\r' && c != eol_);
+  [[nodiscard]] static bool is_line_end(char c) noexcept { return c == '\n' || c == '\r'; }
+  [[nodiscard]] static bool is_blank(char c) noexcept {
+    return c == ' ' || c == '\t' || c == '\v' || c == '\f';
   }
   [[nodiscard]] bool is_separator(char c) const noexcept {
     return c == ' ' || (c >= '\t' && c <= '\r') || c == '#' || c == '\\';
@@ -40,6 +41,8 @@ class TextScan {
   }
   // Moves behind the next line end.
   void skip_line() noexcept;
+  // Returns the position behind the line end that starts there, or null if none does.
+  [[nodiscard]] const char* behind_line_end(const char* position) const noexcept;
   // Moves to the next token, across lines; if `comments`, also skips from a '#' to its line end.
   void skip_space(bool comments) noexcept;
   // Returns the bytes up to the next blank, line end or file end, and moves behind them.
@@ -62,7 +65,6 @@ class TextScan {
   [[nodiscard]] std::uint64_t offset(const char* position) const noexcept {
     return static_cast<std::uint64_t>(position - source_.bytes.data());
   }
-  [[nodiscard]] char line_end() const noexcept { return eol_; }
   [[nodiscard]] std::size_t bytes_left() const noexcept {
     return static_cast<std::size_t>(end_ - p_);
   }
@@ -77,7 +79,7 @@ class TextScan {
   const Source& source_;
   const char* p_;
   const char* end_;
-  char eol_ = '\n';
+  bool has_carriage_returns_ = false;
 };
 
 // Returns the place of a vertex whose coordinates start at x, y and z. Throws Error Unsupported if

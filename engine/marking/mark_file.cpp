@@ -251,6 +251,10 @@ void FileMarking::load() noexcept {
     result_.points = file.mesh().positions.size();
     result_.faces = file.face_count();
     result_.input_hash = work_->mesh->hash;
+    if (!file.why_fixed().empty()) {
+      throw Error(ErrorCode::Unsupported, result_.mesh, "",
+                  "cannot be marked: " + file.why_fixed());
+    }
   });
 }
 
@@ -448,8 +452,12 @@ std::uint64_t estimate_memory(std::uint64_t file_bytes, const std::filesystem::p
     std::uint64_t memory;
     std::uint64_t file_bytes_a_vertex;
   };
-  constexpr std::array<Format, 4> kFormats = {
-      {{".ply", 18, 38}, {".stl", 10, 100}, {".off", 10, 45}, {".obj", 10, 60}}};
+  constexpr std::array<Format, 6> kFormats = {{{".ply", 18, 38},
+                                               {".stl", 10, 100},
+                                               {".off", 10, 45},
+                                               {".obj", 10, 60},
+                                               {".glb", 28, 24},
+                                               {".gltf", 21, 32}}};
   const std::string ending = lower_case_ending(mesh);
   const auto known = std::find_if(kFormats.begin(), kFormats.end(),
                                   [&](const Format& format) { return format.ending == ending; });

@@ -1,5 +1,5 @@
 // Readers of mesh files. The first byte chooses the format; the rest is the file. What was read can
-// be patched and read again, with the same number of vertices and faces.
+// be patched and read again, with the same number of vertices and faces, unless it says why not.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -35,12 +35,12 @@ void round_trip(const MeshFile& file, const char* name) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   constexpr std::array kNames = {"a.obj", "a.off", "a.ply", "a.stl"};
   if (size == 0) return 0;
-  const char* name = kNames[data[0] % kNames.size()];
+  const char* name = data[0] < 128 ? kNames[data[0] % kNames.size()] : "a.gltf";
   const std::string_view text = triglyph::fuzz::text_of(data + 1, size - 1);
   try {
     const MeshFile file = MeshFile::read({text.begin(), text.end()}, name);
-    expect(file.vertex_count() <= text.size());
-    round_trip(file, name);
+    expect(file.vertex_count() <= text.size() || !file.why_fixed().empty());
+    if (file.why_fixed().empty()) round_trip(file, name);
   } catch (const triglyph::Error&) {
     return 0;
   }

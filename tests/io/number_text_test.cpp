@@ -107,6 +107,29 @@ TEST(LearnStyle, KeepsExponentsWhereAllNumbersHaveThem) {
   EXPECT_EQ(step_at(style, 31.25), 1e-5);
 }
 
+// Which numbers have an exponent, and how it is written, tells the writer.
+TEST(LearnStyle, WritesExponentsAsTheFileDoes) {
+  const NumberStyle percent_g = style_of({"-586931", "38365.1", "1.18669e+06", "0.5"});
+  EXPECT_EQ(format(percent_g, 1189934.2), "1.18993e+06");
+  EXPECT_EQ(format(percent_g, 999999.7), "1e+06");
+  EXPECT_EQ(format(percent_g, 49390.8), "49390.8");
+  EXPECT_EQ(round_to(percent_g, 1189934.2), 1189930.0);
+  EXPECT_EQ(step_at(percent_g, 1189934.2), 10.0);
+  const NumberStyle java = style_of({"-5.8693124E-5", "7.0E-5", "1.25", "1.0E7", "0.001234"});
+  EXPECT_EQ(format(java, 5.8e-5), "5.8E-5");
+  EXPECT_EQ(format(java, 2.5e-3), "0.0025");
+  EXPECT_EQ(format(java, 2.5e-4), "2.5E-4");
+  EXPECT_EQ(format(java, 3e-4), "3.0E-4");
+  EXPECT_EQ(format(java, 2.5e7), "2.5E7");
+  const NumberStyle script = style_of({"1.25e-7", "0.0000125", "12500000", "0.5"});
+  EXPECT_EQ(format(script, 2.5e-7), "2.5e-7");
+  EXPECT_EQ(format(script, 2.5e-5), "0.000025");
+  EXPECT_EQ(format(script, 22500000), "22500000");
+  EXPECT_EQ(format(style_of({"+1.50", "-2.25", "+0.00"}), 3.5), "+3.50");
+  EXPECT_EQ(format(style_of({"+1.50", "-2.25", "0.00"}), 3.5), "3.50");
+  EXPECT_EQ(format(style_of({"1e5", "2.5e-3"}), 31250.0), "3.1e4");
+}
+
 TEST(LearnStyle, KeepsIntegersAndSmallHabits) {
   EXPECT_EQ(format(style_of({"1", "20", "-3"}), 4.6), "5");
   EXPECT_EQ(step_at(style_of({"1", "20", "-3"}), 4.6), 1.0);
@@ -130,7 +153,11 @@ TEST(FormatNumber, ReadsBackAsRounded) {
                                                             {"0.12345678901234567", "1.5"},
                                                             {"1e-300", "1e300"},
                                                             {"0.1234567890123456", "3.25"},
-                                                            {".5", "1.25e-9"}};
+                                                            {".5", "1.25e-9"},
+                                                            {"-586931", "1.18669e+06", "0.5"},
+                                                            {"5.8693124E-5", "1.25", "1.0E7"},
+                                                            {"1.25e-7", "0.0000125", "125"},
+                                                            {"+1.5", "-2.25e-05", "+1e+20"}};
   for (const auto& tokens : files) {
     const NumberStyle style = style_of(tokens);
     for (std::uint64_t i = 0; i < 4000; ++i) {

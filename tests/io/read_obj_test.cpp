@@ -35,8 +35,8 @@ TEST(ReadObj, TakesFacesBeforeTheirVertices) {
 
 TEST(ReadObj, RefusesBadFacesAtTheirLine) {
   for (const char* face :
-       {"f 1 2", "f", "f 0 1 2", "f /1 2 3", "f 1 2 99", "f 1 2 -4", "f 1 2 x", "f 1 2 3x",
-        "f 1/2/3/4 2 3", "f 1.5 2 3", "f 1 2 99999999999999999999", "f 1 2 \\3"}) {
+       {"f", "f 0 1 2", "f /1 2 3", "f 1 2 99", "f 1 2 -4", "f 1 2 x", "f 1 2 3x", "f 1/2/3/4 2 3",
+        "f 1.5 2 3", "f 1 2 99999999999999999999", "f 1 2 \\3"}) {
     EXPECT_EQ(outcome(with_face(face), "a.obj"), "malformed line 4") << face;
   }
 }
@@ -65,6 +65,24 @@ TEST(ReadObj, TakesEveryLineEnd) {
             1U);
   EXPECT_EQ(read_text("# c\rv 0 0 0\rv 1 0 \\\r 0\rv 0 1 0\rf 1 2 3", "a.obj").face_count(), 1U);
   EXPECT_EQ(outcome("v 0 0 0\rv 0 0\r", "a.obj"), "malformed line 2");
+}
+
+TEST(ReadObj, TakesLineEndsOfEveryKindInOneFile) {
+  const std::string text = "v 0 0 0\rv 1 0 0\r\nv 0 1 0\n\r\rf 1 2 \\\r 3\rf 1 2 3 \\\r\n\n";
+  const MeshFile file = read_text(text, "a.obj");
+  EXPECT_EQ(file.vertex_count(), 3U);
+  EXPECT_EQ(file.face_count(), 2U);
+  EXPECT_EQ(moved(file, {0, 0, 1}),
+            "v 0 0 1\rv 1 0 1\r\nv 0 1 1\n\r\rf 1 2 \\\r 3\rf 1 2 3 \\\r\n\n");
+  EXPECT_EQ(outcome("v 0 0 0\rv 1 0 0\r\nv 0 1\n", "a.obj"), "malformed line 3");
+}
+
+TEST(ReadObj, PassesOverPointsAndLinesAmongTheFaces) {
+  const MeshFile file =
+      read_text(std::string(kThree) + "f 1\nf 1 2\nf 1/1 3/2 # c\nf 1 2 3\n", "a.obj");
+  EXPECT_EQ(file.face_count(), 1U);
+  EXPECT_EQ(file.mesh().triangles.size(), 1U);
+  EXPECT_EQ(outcome(std::string(kThree) + "f 1 9\n", "a.obj"), "malformed line 4");
 }
 
 TEST(ReadObj, SkipsAByteOrderMarkButNotUtf16) {

@@ -132,5 +132,33 @@ TEST(ReadPly, KeepsDoublesAndUnsignedLists) {
             "read");
 }
 
+// The first line end tells where binary data begin, even if their first byte is a line feed.
+TEST(ReadPly, TakesEveryLineEnd) {
+  const std::string lines[] = {"ply",
+                               "format ascii 1.0",
+                               "element vertex 3",
+                               "property float x",
+                               "property float y",
+                               "property float z",
+                               "element face 1",
+                               "property list uchar int vertex_indices",
+                               "end_header"};
+  for (const std::string end : {"\r", "\n", "\r\n"}) {
+    std::string header;
+    for (const std::string& line : lines) header += line + end;
+    const std::string text = header + "0 0 0" + end + "1 0 0\r0 1 0\n3 0 1 2" + end;
+    EXPECT_EQ(read_text(text, "a.ply").mesh().triangles.size(), 1U);
+    std::string binary = header;
+    binary.replace(binary.find("ascii"), 5, "binary_little_endian");
+    const float values[9] = {2.8e-45F * 0 + 1.4e-44F, 0, 0, 1, 0, 0, 0, 1, 0};  // begins with 0x0a
+    ASSERT_EQ(*reinterpret_cast<const char*>(values), '\n');
+    binary.append(reinterpret_cast<const char*>(values), sizeof values);
+    const std::int32_t corners[3] = {0, 1, 2};
+    binary += '\3';
+    binary.append(reinterpret_cast<const char*>(corners), sizeof corners);
+    EXPECT_EQ(read_text(binary, "a.ply").mesh().positions[0][0], static_cast<double>(values[0]));
+  }
+}
+
 }  // namespace
 }  // namespace triglyph

@@ -47,13 +47,49 @@ TEST(ReadStl, TakesAscii) {
 }
 
 TEST(ReadStl, RefusesBadAscii) {
-  EXPECT_EQ(outcome("solid\n" + kFacet, "a.stl"), "malformed line 9");
   EXPECT_EQ(outcome("solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0\nendloop\n", "a.stl"),
             "malformed line 5");
   EXPECT_EQ(outcome("solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 nan\n", "a.stl"),
             "malformed line 4");
   EXPECT_EQ(outcome("solid\n" + kFacet + "junk\nendsolid", "a.stl"), "malformed line 9");
   EXPECT_EQ(outcome("nothing of the kind", "a.stl"), "malformed byte 19");
+}
+
+TEST(ReadStl, TakesAsciiAsWritersWriteIt) {
+  const std::string apart =
+      "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1.5 0 0\nvertex 0 1.5 0\nend loop\n"
+      "end facet\n";
+  for (const std::string& text :
+       {"solid\n" + kFacet, "solid a\n" + kFacet + "end solid a\n", "solid\n" + apart + "endsolid",
+        "solid a\n color 0.5 0.5 0.8\n" + kFacet + "endsolid", "solid a\nsolid a\n" + kFacet,
+        "solid\r" + kFacet + "\r\nendsolid\r", "solid a\n" + kFacet + "endsolid a\n\n\n"}) {
+    const MeshFile file = read_text(text, "a.stl");
+    EXPECT_EQ(file.format(), FileFormat::StlAscii) << text;
+    EXPECT_EQ(file.face_count(), 1U) << text;
+  }
+}
+
+// 84 + 50 * n bytes of text are text, although a count of n could be read from them.
+TEST(ReadStl, NeverTakesTextForBinary) {
+  std::string text = "solid ";
+  text.resize(80, 'x');
+  const std::uint32_t count = 0x20202020;  // four blanks
+  text.append(reinterpret_cast<const char*>(&count), 4);
+  text += "\n" + kFacet + "endsolid\n";
+  while ((text.size() - 84) % 50 != 0) text += '\n';
+  EXPECT_EQ(read_text(text, "a.stl").format(), FileFormat::StlAscii);
+}
+
+// Facets behind a count that is too small would stay where they are and tear the surface.
+TEST(ReadStl, TakesTheFacetsBehindTheirCount) {
+  for (const std::uint32_t claimed : {0U, 1U, 0xffffffffU}) {
+    EXPECT_EQ(read_text(binary(claimed, 3), "a.stl").face_count(), 3U) << claimed;
+  }
+  EXPECT_EQ(read_text(binary(1, 3) + "x", "a.stl").face_count(), 1U);  // not whole facets
+  std::string text = binary(1, 2);
+  const float infinite = std::numeric_limits<float>::infinity();
+  std::memcpy(text.data() + 84 + 50 + 12, &infinite, 4);
+  EXPECT_EQ(read_text(text, "a.stl").face_count(), 1U);  // other data
 }
 
 TEST(ReadStl, TellsBinaryByStructure) {

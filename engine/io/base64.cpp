@@ -1,0 +1,32 @@
+#include "engine/io/base64.h"
+
+#include <sodium.h>
+
+namespace triglyph {
+
+std::string base64_of(std::span<const char> bytes) {
+  constexpr int kVariant = sodium_base64_VARIANT_ORIGINAL;
+  std::string text(sodium_base64_ENCODED_LEN(bytes.size(), kVariant), '\0');
+  sodium_bin2base64(text.data(), text.size(), reinterpret_cast<const unsigned char*>(bytes.data()),
+                    bytes.size(), kVariant);
+  text.pop_back();  // the terminating zero
+  return text;
+}
+
+bool append_from_base64(std::string_view text, std::vector<char>& out) {
+  const std::size_t first = out.size();
+  out.resize(first + text.size() / 4 * 3 + 3);
+  const bool is_padded = text.ends_with('=') || text.size() % 4 == 0;
+  const int variant =
+      is_padded ? sodium_base64_VARIANT_ORIGINAL : sodium_base64_VARIANT_ORIGINAL_NO_PADDING;
+  std::size_t size = 0;
+  const char* end = nullptr;
+  const bool is_valid =
+      sodium_base642bin(reinterpret_cast<unsigned char*>(out.data()) + first, out.size() - first,
+                        text.data(), text.size(), nullptr, &size, &end, variant) == 0 &&
+      end == text.data() + text.size();
+  out.resize(first + (is_valid ? size : 0));
+  return is_valid;
+}
+
+}  // namespace triglyph
