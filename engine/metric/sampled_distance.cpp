@@ -116,7 +116,7 @@ class Metro {
     const auto vertex_samples = static_cast<double>(sums.samples);
     const double left = target_ - vertex_samples;
     if (left > 0 && area_ > 0) {
-      const Sums on_edges = edges(std::sqrt(left / area_));
+      const Sums on_edges = edges(std::sqrt(left / area_), left);
       sums = join(sums, on_edges);
       const double for_faces = left - vertex_samples - static_cast<double>(on_edges.samples);
       if (for_faces > 0) sums = join(sums, faces(for_faces / area_));
@@ -132,12 +132,18 @@ class Metro {
     });
   }
 
-  Sums edges(double samples_a_length) {
+  // Needles have long edges and hardly any area, which alone would ask for any number of samples.
+  Sums edges(double samples_a_length, double most) {
     const std::vector<Edge> edges = edge_graph(mesh_).edges;
     std::vector<double> shares(edges.size());
+    double wanted = 0;
     for (std::size_t e = 0; e < edges.size(); ++e) {
       shares[e] =
           samples_a_length * (mesh_.positions[edges[e].to] - mesh_.positions[edges[e].from]).norm();
+      wanted += shares[e];
+    }
+    if (wanted > most) {
+      for (double& share : shares) share *= most / wanted;
     }
     const std::vector<std::uint32_t> counts = whole_samples(shares);
     return fold(edges.size(), other_, [&](std::size_t e, Probe& probe, Sums& sums) {
@@ -187,12 +193,49 @@ void integrate(const std::array<double, 3>& d, double area, Sums& sums) {
   sums.second += area * (squares + sum * sum) / 12;
 }
 
+// Integrates over a triangle much longer than it is high, from base to apex: a grid of similar
+// triangles would take the square of its length in samples.
+void integrate_needle(const Vec3& left, const Vec3& right, const Vec3& apex, double step,
+                      Probe& probe, Sums& sums) {
+  const double base = (right - left).norm();
+  const double height = cross(right - left, apex - left).norm() / base;
+  const double strips = std::max(1.0, std::ceil(height / step));
+  const auto columns = static_cast<std::size_t>(std::ceil(base / step));
+  std::vector<double> last, row(columns + 1);
+  for (double strip = 0; strip <= strips; ++strip) {
+    const double up = strip / strips;
+    const Vec3 from = left + (apex - left) * up, to = right + (apex - right) * up;
+    for (std::size_t j = 0; j <= columns; ++j) {
+      const double along = static_cast<double>(j) / static_cast<double>(columns);
+      row[j] = probe.distance(from + (to - from) * along);
+      sums.max = std::max(sums.max, row[j]);
+      ++sums.samples;
+    }
+    // Two triangles a cell, whose bases are parts of this row and of the last.
+    const double cell = base * height / (2 * strips * static_cast<double>(columns));
+    for (std::size_t j = 0; j < columns && strip > 0; ++j) {
+      integrate({last[j], last[j + 1], row[j]}, cell * (1 - (strip - 1) / strips), sums);
+      integrate({row[j], row[j + 1], last[j + 1]}, cell * (1 - up), sums);
+    }
+    last = row;
+  }
+}
+
 void integrate_face(const Mesh& mesh, const Triangle& t, double step, Probe& probe, Sums& sums) {
   const std::array<Vec3, 3> corners = {mesh.positions[t[0]], mesh.positions[t[1]],
                                        mesh.positions[t[2]]};
   double longest = 0;
+  std::size_t base = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    longest = std::max(longest, (corners[(i + 1) % 3] - corners[i]).norm());
+    const double length = (corners[(i + 1) % 3] - corners[i]).norm();
+    if (length > longest) base = i;
+    longest = std::max(longest, length);
+  }
+  // Below a quarter, strips take fewer samples than similar triangles.
+  constexpr double kNeedle = 0.25;
+  if (longest > step && 2 * triangle_area(mesh.positions, t) < kNeedle * longest * longest) {
+    return integrate_needle(corners[base], corners[(base + 1) % 3], corners[(base + 2) % 3], step,
+                            probe, sums);
   }
   const auto rows = static_cast<std::size_t>(std::max(1.0, std::ceil(longest / step)));
   const auto parts = static_cast<double>(rows);

@@ -1,5 +1,7 @@
 #include "engine/metric/sampled_distance.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "engine/base/error.h"
@@ -96,6 +98,35 @@ TEST(SampledDistances, PassOverFacesThatLieOnOneAnother) {
   const TwoWayStatistics s = mesh_distance(pile, pile, 0.02);
   EXPECT_LT(s.forward.max, 1e-14);
   EXPECT_GT(s.forward.samples, 3'000'000U);
+}
+
+// Two faces of area 1/2 and one a billion long: samples go by the budget, not by the length.
+Mesh with_needle(double length, double width) {
+  return {{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(length, 0, 0),
+           Vec3(length, width, 0)},
+          {{0, 2, 1}, {0, 1, 3}, {0, 4, 5}}};
+}
+
+TEST(SampledDistances, OfNeedlesTakeNoMoreSamplesThanTheirBudget) {
+  const Mesh mesh = with_needle(1e9, 1e-9);
+  const TwoWayStatistics s = metro(mesh, mesh);
+  EXPECT_LE(s.forward.samples, 3U * 10 * 3);
+  const Mesh fan = with_needle(100, 0.5);
+  const TwoWayStatistics by_step = mesh_distance(fan, fan, 0.1);
+  EXPECT_LE(by_step.forward.samples, 10000U);  // half a million as similar triangles
+}
+
+TEST(MeshDistance, IntegratesALinearFunctionOverNeedlesExactly) {
+  const Mesh flat{{Vec3(-99, -99, 0), Vec3(99, -99, 0), Vec3(99, 99, 0), Vec3(-99, 99, 0)},
+                  {{0, 1, 2}, {0, 2, 3}}};
+  // The distance grows from 0 to 0.8 along a needle; its mean is that of the corners.
+  const Mesh needle{{Vec3(0, 0, 0), Vec3(8, 0, 0.8), Vec3(2, 0.4, 0.2)}, {{0, 1, 2}}};
+  const double area = triangle_area(needle.positions, needle.triangles[0]);
+  EXPECT_LT(area, 2);
+  const TwoWayStatistics s = mesh_distance(needle, flat, 0.15);
+  EXPECT_NEAR(s.forward.mean, 1.0 / 3, kExactTolerance);
+  EXPECT_NEAR(s.forward.rms, std::sqrt((0.64 + 0.04 + 1.0) / 12), kExactTolerance);
+  EXPECT_NEAR(s.forward.max, 0.8, kExactTolerance);
 }
 
 TEST(SampledDistances, AreRefusedWithoutFaces) {
