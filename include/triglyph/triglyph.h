@@ -1,5 +1,5 @@
-// Hides a blind, invisible watermark in mesh files (OBJ, OFF, PLY, STL, GLB, glTF) and reads it back. This is
-// what programs outside of triglyph include; it names standard types alone.
+// Hides a blind, invisible watermark in mesh files (OBJ, OFF, PLY, STL, GLB, glTF) and reads it
+// back. This is what programs outside of triglyph include; it names standard types alone.
 //
 // Every function may be called from several threads at once. Each uses the threads of the arena of
 // oneTBB that it is called from, and its result does not depend on how many these are.
