@@ -14,6 +14,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
+#include "engine/base/text.h"
 #include "engine/io/mesh_file.h"
 #include "engine/marking/mark_file.h"
 #include "engine/marking/refusal.h"
@@ -64,7 +65,10 @@ void draw_pair(const RenderArguments& arguments, const fs::path& original, const
   const MeshFile first = MeshFile::open(original);
   const auto panels = arguments.chosen_panels();
   const auto draw = [&](const Mesh& second, const PictureOptions& options, const fs::path& path) {
-    write_picture(draw_comparison(first.mesh(), second, panels, options), path);
+    PictureOptions named = options;
+    named.original_name = printable(original.filename().string());
+    named.marked_name = printable((marked.empty() ? original : marked).filename().string());
+    write_picture(draw_comparison(first.mesh(), second, panels, named), path);
   };
   const auto draw_all = [&](const Mesh& second) {
     if (arguments.turntable == 0) return draw(second, arguments.picture, out);

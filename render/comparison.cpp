@@ -4,12 +4,14 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
 #include "engine/geometry/spatial_index.h"
 #include "engine/mesh/edge_length.h"
 #include "engine/mesh/surface_diagonal.h"
+#include "engine/mesh/surface_points.h"
 #include "engine/metric/comparison.h"
 #include "engine/metric/hausdorff.h"
 #include "render/colours.h"
@@ -44,6 +46,15 @@ void draw_ring(int x, int y, int radius, Image& picture) {
   }
 }
 
+// What is to be in the picture.
+std::vector<Vec3> places_on_surface(const Mesh& mesh) {
+  std::vector<Vec3> places;
+  for (const std::uint32_t point : surface_points(mesh)) places.push_back(mesh.positions[point]);
+  return places;
+}
+
+constexpr const char* kUnrelated = "other triangles than the original: none can be compared";
+
 View view_for(const Mesh& mesh, const PictureOptions& options) {
   return options.view == "auto" ? automatic_view(mesh) : view_named(options.view);
 }
@@ -59,13 +70,13 @@ class Comparison {
         has_same_triangles_(have_same_triangles(original, marked)) {}
 
   Panel panel(const std::string& name) {
-    if (name == "original") return plain("original", original_);
+    if (name == "original") return plain("original", original_, options_.original_name);
     if (name == "facets") return facets();
     if (name == "points") return points();
     if (name == "distance") return heat(false);
     if (name == "signed") return heat(true);
     if (name == "worst") return worst();
-    return plain("marked", marked_);
+    return plain(title_of_second(), marked_, options_.marked_name);
   }
 
  private:
@@ -75,13 +86,20 @@ class Comparison {
     return RayCaster(scene).draw(camera_, options_.width, options_.height, options_.samples);
   }
 
-  [[nodiscard]] std::string counts_of(const Mesh& mesh) const {
-    return std::to_string(mesh.positions.size()) + " points, " +
+  // A mesh of other triangles may be anything; one whose points are all where they were has no
+  // mark.
+  [[nodiscard]] std::string title_of_second() const {
+    if (!has_same_triangles_) return "compared";
+    return original_.positions == marked_.positions ? "unchanged" : "marked";
+  }
+
+  [[nodiscard]] static std::string counts_of(const Mesh& mesh, const std::string& name) {
+    return (name.empty() ? "" : name + ", ") + std::to_string(mesh.positions.size()) + " points, " +
            std::to_string(mesh.triangles.size()) + " triangles";
   }
 
-  Panel plain(const std::string& title, const Mesh& mesh) {
-    return {title, counts_of(mesh), draw(scene_of(mesh)), std::nullopt};
+  Panel plain(const std::string& title, const Mesh& mesh, const std::string& name) {
+    return {title, counts_of(mesh, name), draw(scene_of(mesh)), std::nullopt};
   }
 
   Panel facets() {
@@ -96,8 +114,9 @@ class Comparison {
         ++moved;
       }
     }
-    return {"marked, moved facets shaded",
-            std::to_string(moved) + " of " + std::to_string(marked_.triangles.size()) + " facets",
+    const std::string note =
+        std::to_string(moved) + " of " + std::to_string(marked_.triangles.size()) + " facets";
+    return {title_of_second() + ", moved facets shaded", has_same_triangles_ ? note : kUnrelated,
             draw(scene), std::nullopt};
   }
 
@@ -113,12 +132,14 @@ class Comparison {
     }
     const std::string note = std::to_string(scene.dots.size()) + " of " +
                              std::to_string(marked_.positions.size()) + " points";
-    return {"marked, moved points", note, draw(scene), std::nullopt};
+    return {title_of_second() + ", moved points", has_same_triangles_ ? note : kUnrelated,
+            draw(scene), std::nullopt};
   }
 
   Panel heat(bool with_sign) {
     const std::vector<double> far = distances(original_, marked_, with_sign);
-    double greatest = 0;
+    // The scale reaches to the distance that the record states, which may lie between the points.
+    double greatest = farthest().symmetric();
     for (const double distance : far) greatest = std::max(greatest, std::abs(distance));
     Scene scene = scene_of(marked_);
     const double whole = greatest > 0 ? greatest : 1;
@@ -131,13 +152,19 @@ class Comparison {
             "", draw(scene), Scale{100 * greatest / diagonal_, with_sign}};
   }
 
+  // Returns the Hausdorff distance, computed once.
+  const HausdorffDistance& farthest() {
+    if (farthest_) return *farthest_;
+    const double tolerance = 1e-3 * std::max(diagonal_, std::numeric_limits<double>::min());
+    farthest_ = has_same_triangles_ ? hausdorff_of_move(original_.triangles, original_.positions,
+                                                        marked_.positions, tolerance * 1e-2)
+                                    : hausdorff(original_, marked_, tolerance);
+    return *farthest_;
+  }
+
   // Draws before and after in half a panel each.
   Panel worst() {
-    const double tolerance = 1e-3 * std::max(diagonal_, std::numeric_limits<double>::min());
-    const HausdorffDistance distance =
-        has_same_triangles_ ? hausdorff_of_move(original_.triangles, original_.positions,
-                                                marked_.positions, tolerance * 1e-2)
-                            : hausdorff(original_, marked_, tolerance);
+    const HausdorffDistance& distance = farthest();
     const Vec3 place = distance.backward.distance >= distance.forward.distance
                            ? distance.backward.at
                            : distance.forward.at;
@@ -185,6 +212,7 @@ class Comparison {
   Camera camera_;
   double diagonal_;
   bool has_same_triangles_;
+  std::optional<HausdorffDistance> farthest_;
 };
 
 }  // namespace
@@ -207,10 +235,12 @@ std::vector<bool> moved_facets(const Mesh& original, const Mesh& marked) {
 
 std::vector<double> distances(const Mesh& original, const Mesh& marked, bool with_sign) {
   const SpatialIndex surface(original.positions, original.triangles);
-  std::vector<double> far(marked.positions.size());
+  const std::vector<std::uint32_t> points = surface_points(marked);
+  std::vector<double> far(marked.positions.size(), 0);
   parallel_for(
-      far.size(),
-      [&](std::size_t p) {
+      points.size(),
+      [&](std::size_t i) {
+        const std::uint32_t p = points[i];
         const Vec3& point = marked.positions[p];
         const ClosestPoint near = surface.closest(point, std::numeric_limits<double>::infinity());
         far[p] = near.distance;
@@ -234,8 +264,8 @@ PictureOptions drawable(const Mesh& mesh, PictureOptions options) {
     refuse("samples are 1 to " + std::to_string(kMostSamples) + " a pixel");
   }
   if (options.height == 0) {
-    const double aspect =
-        std::clamp(aspect_of(mesh.positions, view_for(mesh, options)), kNarrowest, kWidest);
+    const double aspect = std::clamp(aspect_of(places_on_surface(mesh), view_for(mesh, options)),
+                                     kNarrowest, kWidest);
     options.height = std::clamp(static_cast<int>(std::lround(options.width / aspect)), kLeastPixels,
                                 kMostPixels);
   }
@@ -243,7 +273,7 @@ PictureOptions drawable(const Mesh& mesh, PictureOptions options) {
 }
 
 Camera camera_for(const Mesh& mesh, const PictureOptions& options) {
-  return whole_view(mesh.positions, view_for(mesh, options),
+  return whole_view(places_on_surface(mesh), view_for(mesh, options),
                     static_cast<double>(options.width) / options.height);
 }
 

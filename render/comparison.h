@@ -20,6 +20,8 @@ struct PictureOptions {
   std::string view = "auto";      // automatic_view(), or see view_named()
   bool is_flat = false;           // flat instead of smooth shading
   Colour background{1, 1, 1, 1};  // transparent if alpha is 0
+  std::string original_name;      // in the captions; empty: none
+  std::string marked_name;
 };
 
 // Returns the names of the panels: "original", "marked", "facets" (those that moved are blue),
@@ -32,13 +34,13 @@ struct PictureOptions {
 [[nodiscard]] std::vector<bool> moved_facets(const Mesh& original, const Mesh& marked);
 
 // Returns the distance of each point of `marked` from the surface of `original` in model units;
-// with a sign, < 0 behind the nearest face.
+// with a sign, < 0 behind the nearest face. 0 of points that no triangle uses.
 [[nodiscard]] std::vector<double> distances(const Mesh& original, const Mesh& marked,
                                             bool with_sign);
 
 // Draws one panel for each name, 1 to 6. If the meshes have different triangles, no facets or
-// points count as moved. Throws Error Usage for unknown names, too many or none, bad options, or a
-// mesh without faces.
+// points count as moved, and the captions say so. Throws Error Usage for unknown names, too many or
+// none, bad options, or a mesh without faces.
 [[nodiscard]] Image draw_comparison(const Mesh& original, const Mesh& marked,
                                     const std::vector<std::string>& panels,
                                     const PictureOptions& options);

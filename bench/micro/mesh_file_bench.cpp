@@ -82,6 +82,32 @@ void BM_OpenObj(benchmark::State& state) {
 }
 BENCHMARK(BM_OpenObj)->UseRealTime()->Unit(benchmark::kMillisecond);
 
+// A GLB of 20 MB, with positions and indices alone: nothing in it is passed over.
+const std::filesystem::path& large_glb() {
+  static const std::filesystem::path path = [] {
+    auto made = scratch("waves.glb");
+    write(made, triglyph::export_mesh(make_waves(750), {FileFormat::Glb}));
+    return made;
+  }();
+  return path;
+}
+
+void BM_OpenGlb(benchmark::State& state) {
+  std::size_t bytes = 0;
+  for (auto _ : state) bytes = MeshFile::open(large_glb()).bytes().size();
+  count_bytes(state, bytes);
+}
+BENCHMARK(BM_OpenGlb)->UseRealTime()->Unit(benchmark::kMillisecond);
+
+void BM_PatchGlb(benchmark::State& state) {
+  const MeshFile file = MeshFile::open(large_glb());
+  std::vector<Vec3> positions = file.mesh().positions;
+  for (Vec3& p : positions) p *= 1.001;
+  for (auto _ : state) benchmark::DoNotOptimize(file.patched(positions));
+  count_bytes(state, file.bytes().size());
+}
+BENCHMARK(BM_PatchGlb)->UseRealTime()->Unit(benchmark::kMillisecond);
+
 void BM_PatchObj(benchmark::State& state) {
   const MeshFile file = MeshFile::open(large_obj());
   std::vector<Vec3> positions = file.mesh().positions;

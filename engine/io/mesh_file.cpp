@@ -9,6 +9,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
+#include "engine/geometry/box.h"
 #include "engine/io/byte_parts.h"
 #include "engine/io/file_bytes.h"
 #include "engine/io/gltf.h"
@@ -199,20 +200,21 @@ void MeshFile::Content::patch_image(std::span<const Vec3> positions, char* out) 
 std::vector<BoundsChange> MeshFile::Content::bounds_changes(std::span<const Vec3> positions) const {
   std::vector<BoundsChange> changes;
   for (const GltfFile::Accessor& accessor : gltf->accessors) {
-    for (int axis = 0; axis < 3; ++axis) {
-      constexpr double kInfinity = std::numeric_limits<double>::infinity();
-      double before[2] = {kInfinity, -kInfinity}, after[2] = {kInfinity, -kInfinity};
-      for (std::size_t v = accessor.first; v < accessor.first + accessor.count; ++v) {
-        const double from = mesh.positions[point_of_vertex[v]][axis];
-        const double to = stored(positions, v, axis);
-        before[0] = std::min(before[0], from);
-        before[1] = std::max(before[1], from);
-        after[0] = std::min(after[0], to);
-        after[1] = std::max(after[1], to);
+    Box before, after;
+    for (std::size_t v = accessor.first; v < accessor.first + accessor.count; ++v) {
+      const std::uint32_t point = point_of_vertex[v];
+      const Vec3& from = mesh.positions[point];
+      before.extend(from);
+      after.extend(from == positions[point] ? from
+                                            : Vec3(stored(positions, v, 0), stored(positions, v, 1),
+                                                   stored(positions, v, 2)));
+    }
+    for (int axis = 0; axis < 3 && accessor.count > 0; ++axis) {
+      if (before.low[axis] != after.low[axis]) {
+        changes.push_back({accessor.index, axis, false, after.low[axis]});
       }
-      for (int end = 0; end < 2; ++end) {
-        if (before[end] == after[end]) continue;
-        changes.push_back({accessor.index, axis, end == 1, after[end]});
+      if (before.high[axis] != after.high[axis]) {
+        changes.push_back({accessor.index, axis, true, after.high[axis]});
       }
     }
   }

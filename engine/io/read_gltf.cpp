@@ -3,6 +3,7 @@
 // Seams between primitives close, since equal positions are one point.
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <map>
 #include <set>
 #include <string>
@@ -266,11 +267,12 @@ class GltfReader {
     }
     const Positions result{content_.vertices.size(), static_cast<std::size_t>(base.count)};
     const auto step = static_cast<std::int32_t>(size_of(base.scalar));
+    content_.vertices.resize(result.first + result.count, Vec3(0, 0, 0));
+    content_.places.tokens.resize(result.first + result.count);
     for (std::uint64_t i = 0; i < base.count; ++i) {
       const std::uint64_t place = base.place + i * base.stride;
-      content_.places.tokens.push_back({place, step, 2 * step});
-      content_.vertices.push_back(base.has_view ? point_at(object, place, base.scalar)
-                                                : Vec3(0, 0, 0));
+      content_.places.tokens[result.first + i] = {place, step, 2 * step};
+      if (base.has_view) content_.vertices[result.first + i] = point_at(object, place, base.scalar);
     }
     if (base.has_view && base.count > 0) grids_.push_back({base, index, true});
     if (sparse) read_sparse(object, *sparse, base, result);
@@ -281,6 +283,14 @@ class GltfReader {
 
   Vec3 point_at(const GltfObject& object, std::uint64_t place, Scalar scalar) const {
     Vec3 point;
+    if (scalar == Scalar::Float32) {  // by far the most
+      float values[3];
+      std::memcpy(values, image().data() + place, sizeof values);
+      if (!(std::isfinite(values[0]) && std::isfinite(values[1]) && std::isfinite(values[2]))) {
+        object.fail("coordinate is not finite");
+      }
+      return {values[0], values[1], values[2]};
+    }
     for (int axis = 0; axis < 3; ++axis) {
       const std::uint64_t number = place + static_cast<std::uint64_t>(axis) * size_of(scalar);
       point[axis] = load(image().data() + number, scalar, false);
@@ -363,15 +373,29 @@ class GltfReader {
       object.fail("indices are unsigned bytes, shorts or integers");
     }
     if (list.count > image().size()) object.fail("reaches beyond its buffer view");
-    corners_.reserve(list.count);
-    for (std::uint64_t i = 0; i < list.count; ++i) {
-      const double index = load(image().data() + list.place + i * list.stride, list.scalar, false);
-      if (index >= static_cast<double>(vertices.count)) {
-        primitive.fail("index " + std::to_string(static_cast<std::uint64_t>(index)) + " of " +
-                       std::to_string(vertices.count) + " positions");
+    switch (list.scalar) {
+      case Scalar::UInt8:
+        return take_corners<std::uint8_t>(primitive, vertices, list);
+      case Scalar::UInt16:
+        return take_corners<std::uint16_t>(primitive, vertices, list);
+      default:
+        return take_corners<std::uint32_t>(primitive, vertices, list);
+    }
+  }
+
+  template <typename Index>
+  void take_corners(const GltfObject& primitive, const Positions& vertices,
+                    const GltfElements& list) {
+    corners_.resize(list.count);
+    const char* place = image().data() + list.place;
+    for (std::uint64_t i = 0; i < list.count; ++i, place += list.stride) {
+      Index index = 0;
+      std::memcpy(&index, place, sizeof index);
+      if (index >= vertices.count) {
+        primitive.fail("index " + std::to_string(index) + " of " + std::to_string(vertices.count) +
+                       " positions");
       }
-      corners_.push_back(
-          static_cast<std::uint32_t>(vertices.first + static_cast<std::size_t>(index)));
+      corners_[i] = static_cast<std::uint32_t>(vertices.first + index);
     }
   }
 
@@ -384,11 +408,17 @@ class GltfReader {
       gltf_.refuse("more corners than a file of this size holds without sharing indices");
     }
     if (mode == kTriangles) {
-      const std::size_t whole = corners_.size() / 3 * 3;
-      faces.corners.insert(faces.corners.end(), corners_.begin(),
-                           corners_.begin() + static_cast<std::ptrdiff_t>(whole));
-      while ((faces.ends.empty() ? 0 : faces.ends.back()) < faces.corners.size()) {
-        faces.ends.push_back((faces.ends.empty() ? 0 : faces.ends.back()) + 3);
+      corners_.resize(corners_.size() / 3 * 3);
+      std::size_t end = faces.corners.size();
+      const std::size_t before = faces.ends.size();
+      if (end == 0) {
+        faces.corners.swap(corners_);
+      } else {
+        faces.corners.insert(faces.corners.end(), corners_.begin(), corners_.end());
+      }
+      faces.ends.resize(before + (faces.corners.size() - end) / 3);
+      for (std::size_t face = before; face < faces.ends.size(); ++face) {
+        faces.ends[face] = static_cast<std::uint32_t>(end += 3);
       }
       return;
     }

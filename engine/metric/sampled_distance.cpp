@@ -10,6 +10,7 @@
 #include "engine/base/parallel.h"
 #include "engine/geometry/spatial_index.h"
 #include "engine/mesh/edge_graph.h"
+#include "engine/mesh/surface_points.h"
 
 namespace triglyph {
 namespace {
@@ -82,18 +83,6 @@ double area_of(const Mesh& mesh) {
       [](double a, double b) { return a + b; });
 }
 
-std::vector<std::uint32_t> used_points(const Mesh& mesh) {
-  std::vector<bool> is_used(mesh.positions.size(), false);
-  for (const Triangle& triangle : mesh.triangles) {
-    for (const std::uint32_t point : triangle) is_used[point] = true;
-  }
-  std::vector<std::uint32_t> points;
-  for (std::uint32_t p = 0; p < is_used.size(); ++p) {
-    if (is_used[p]) points.push_back(p);
-  }
-  return points;
-}
-
 // Rounds fractional sample counts to integers, carrying each remainder to the next.
 std::vector<std::uint32_t> whole_samples(std::span<const double> shares) {
   std::vector<std::uint32_t> counts(shares.size());
@@ -126,7 +115,7 @@ class Metro {
 
  private:
   Sums vertices() {
-    const std::vector<std::uint32_t> points = used_points(mesh_);
+    const std::vector<std::uint32_t> points = surface_points(mesh_);
     return fold(points.size(), other_, [&](std::size_t i, Probe& probe, Sums& sums) {
       sums.add(probe.distance(mesh_.positions[points[i]]));
     });

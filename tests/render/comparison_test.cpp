@@ -57,6 +57,19 @@ TEST(Distances, HaveTheSignOfTheSide) {
   EXPECT_EQ(plain[0], 0);
 }
 
+// Points that no triangle uses are not seen: neither the view nor the scale is theirs.
+TEST(Distances, AreNoneOfStrayPoints) {
+  const Mesh sheet = test::flat_grid(4, 4);
+  Mesh with_stray = sheet;
+  with_stray.positions.emplace_back(1e6, 0, 0);
+  EXPECT_EQ(distances(sheet, with_stray, false).back(), 0);
+  const PictureOptions options = drawable(with_stray, small());
+  EXPECT_EQ(options.height, drawable(sheet, small()).height);
+  const Camera camera = camera_for(sheet, options), other = camera_for(with_stray, options);
+  EXPECT_EQ(camera.centre, other.centre);
+  EXPECT_EQ(camera.half_height, other.half_height);
+}
+
 // The shaded facets of the picture are the moved ones: the blue area is theirs.
 TEST(DrawComparison, ShadesTheFacetsThatMoved) {
   const Mesh sheet = test::flat_grid(10, 10);
