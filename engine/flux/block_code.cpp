@@ -21,6 +21,9 @@ constexpr double kLeastLead = 7;
 // Payloads up to this size are decoded with one more flipped bit: it is cheap there.
 constexpr int kSmallPayload = 24;
 
+// Far above the rounding of a sum of the reliabilities of all functionals.
+constexpr double kRounding = 1e-9;
+
 constexpr std::size_t kWordBits = 64;
 constexpr std::size_t kWords = (kFunctionals + kWordBits - 1) / kWordBits;
 constexpr std::size_t kBytesOfWord = kWords * kWordBits / 8;
@@ -40,30 +43,15 @@ BitRow operator^(BitRow a, const BitRow& b) {
   return a;
 }
 
-// Sums of weights over the set bits of a row, a byte at a time.
-class BitWeights {
- public:
-  explicit BitWeights(std::span<const double> weights) {
-    for (std::size_t byte = 0; byte < kBytesOfWord; ++byte) {
-      for (std::size_t value = 1; value < 256; ++value) {
-        const auto low = static_cast<std::size_t>(std::countr_zero(value));
-        const std::size_t at = byte * 8 + low;
-        sums_[byte][value] =
-            sums_[byte][value & (value - 1)] + (at < weights.size() ? weights[at] : 0);
-      }
-    }
+// Returns the sum of weights over the set bits of a row, a byte at a time.
+template <typename Sums>
+double weight_of(const BitRow& row, const Sums& sums) {
+  double sum = 0;
+  for (std::size_t byte = 0; byte < kBytesOfWord; ++byte) {
+    sum += sums[byte][row[byte / 8] >> (byte % 8 * 8) & 0xff];
   }
-  [[nodiscard]] double of(const BitRow& row) const {
-    double sum = 0;
-    for (std::size_t byte = 0; byte < kBytesOfWord; ++byte) {
-      sum += sums_[byte][row[byte / 8] >> (byte % 8 * 8) & 0xff];
-    }
-    return sum;
-  }
-
- private:
-  std::array<std::array<double, 256>, kBytesOfWord> sums_{};
-};
+  return sum;
+}
 
 // The rows of the generator over the functionals in order of reliability, brought to a form in
 // which each row alone decides one of the most reliable independent positions.
@@ -95,28 +83,36 @@ struct ReliableBasis {
 };
 
 // The word whose difference from the hard decisions weighs least, among those within a few flips of
-// the basis.
+// the basis. The flipped positions of the basis alone bound the weight from below, so words that
+// can neither be the best nor near it are passed over, and so are words heavier than `most`.
+template <typename Sums>
 class Search {
  public:
-  Search(const ReliableBasis& basis, const BitWeights& weights)
-      : basis_(basis), weights_(weights) {}
+  Search(const ReliableBasis& basis, std::span<const double> reliability, const Sums& sums,
+         double most)
+      : basis_(basis), sums_(sums), most_(most) {
+    for (const std::size_t pivot : basis.pivots) cost_.push_back(reliability[pivot]);
+  }
 
   [[nodiscard]] std::optional<std::uint64_t> best(const BitRow& difference, std::uint64_t payload,
                                                   int flips) {
-    least_ = weights_.of(difference);
+    least_ = weight_of(difference, sums_);
     best_ = payload;
-    descend(difference, payload, 0, flips);
-    if (next_ - least_ < kLeastLead) return std::nullopt;
+    descend(difference, payload, basis_.rows.size(), flips, 0);
+    if (least_ > most_ || next_ - least_ < kLeastLead) return std::nullopt;
     return best_;
   }
 
  private:
-  void descend(const BitRow& difference, std::uint64_t payload, std::size_t from, int flips) {
-    if (flips == 0) return;
-    for (std::size_t row = from; row < basis_.rows.size(); ++row) {
+  // Flips rows below `rows`, the least reliable first.
+  void descend(const BitRow& difference, std::uint64_t payload, std::size_t rows, int flips,
+               double spent) {
+    for (std::size_t row = rows; row-- > 0;) {
+      const double cost = spent + cost_[row];
+      if (cost >= std::min(least_, most_) + kLeastLead) return;  // as it is of all rows before
       const BitRow flipped = difference ^ basis_.rows[row];
       const std::uint64_t flipped_payload = payload ^ basis_.payloads[row];
-      const double weight = weights_.of(flipped);
+      const double weight = weight_of(flipped, sums_);
       if (weight < least_) {
         next_ = least_;
         least_ = weight;
@@ -124,12 +120,14 @@ class Search {
       } else {
         next_ = std::min(next_, weight);
       }
-      descend(flipped, flipped_payload, row + 1, flips - 1);
+      if (flips > 1) descend(flipped, flipped_payload, row, flips - 1, cost);
     }
   }
 
   const ReliableBasis& basis_;
-  const BitWeights& weights_;
+  const Sums& sums_;
+  double most_;
+  std::vector<double> cost_;  // of flipping the position that a row decides; descending
   double least_ = 0;
   double next_ = std::numeric_limits<double>::infinity();  // of any other word
   std::uint64_t best_ = 0;
@@ -170,26 +168,39 @@ FluxBits BlockCode::encode(std::uint64_t payload) const {
   return word;
 }
 
-std::optional<std::uint64_t> BlockCode::decode(const SoftBits& soft) const {
-  std::vector<std::size_t> order;
+SoftOrder::SoftOrder(const SoftBits& soft) : most_evidence_(soft.most_evidence()) {
+  static_assert(kBytes == kBytesOfWord);
   for (std::size_t i = 0; i < kFunctionals; ++i) {
-    if (soft.ratio[i] != 0) order.push_back(i);
+    if (soft.ratio[i] != 0) functionals_.push_back(i);
   }
-  if (order.size() < static_cast<std::size_t>(bits_)) return std::nullopt;
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+  std::stable_sort(functionals_.begin(), functionals_.end(), [&](std::size_t a, std::size_t b) {
     return std::abs(soft.ratio[a]) > std::abs(soft.ratio[b]);
   });
+  for (const std::size_t i : functionals_) {
+    reliability_.push_back(std::abs(soft.ratio[i]));
+    is_one_.push_back(soft.ratio[i] < 0);
+  }
+  for (std::size_t byte = 0; byte < kBytes; ++byte) {
+    for (std::size_t value = 1; value < 256; ++value) {
+      const std::size_t at = byte * 8 + static_cast<std::size_t>(std::countr_zero(value));
+      sums_[byte][value] =
+          sums_[byte][value & (value - 1)] + (at < reliability_.size() ? reliability_[at] : 0);
+    }
+  }
+}
+
+std::optional<std::uint64_t> BlockCode::decode(const SoftOrder& soft, double least_evidence) const {
+  const std::vector<std::size_t>& order = soft.functionals_;
+  if (order.size() < static_cast<std::size_t>(bits_)) return std::nullopt;
   ReliableBasis basis;
   basis.rows.resize(static_cast<std::size_t>(bits_));
   BitRow hard{};
-  std::vector<double> reliability;
   for (std::size_t at = 0; at < order.size(); ++at) {
     const std::size_t i = order[at];
-    for (std::size_t row = 0; row < basis.rows.size(); ++row) {
-      if ((columns_[i] >> row & 1U) != 0) set_bit(basis.rows[row], at);
+    for (std::uint64_t column = columns_[i]; column != 0; column &= column - 1) {
+      set_bit(basis.rows[static_cast<std::size_t>(std::countr_zero(column))], at);
     }
-    if ((soft.ratio[i] < 0) != (scramble_[i] != 0)) set_bit(hard, at);
-    reliability.push_back(std::abs(soft.ratio[i]));
+    if (soft.is_one_[at] != (scramble_[i] != 0)) set_bit(hard, at);
   }
   for (int row = 0; row < bits_; ++row) basis.payloads.push_back(std::uint64_t{1} << row);
   if (!basis.reduce(order.size())) return std::nullopt;
@@ -200,8 +211,10 @@ std::optional<std::uint64_t> BlockCode::decode(const SoftBits& soft) const {
     difference = difference ^ basis.rows[row];
     payload ^= basis.payloads[row];
   }
-  const BitWeights weights(reliability);
-  return Search(basis, weights).best(difference, payload, bits_ <= kSmallPayload ? 3 : 2);
+  // The evidence for a word is the most there is less the weight of its difference.
+  const double most = (soft.most_evidence_ - least_evidence) * M_LN2 + kRounding;
+  return Search(basis, soft.reliability_, soft.sums_, most)
+      .best(difference, payload, bits_ <= kSmallPayload ? 3 : 2);
 }
 
 }  // namespace triglyph

@@ -194,6 +194,9 @@ double likelihood_of_pilots(const SoftPhases& phases, double sharpness) {
 // The attempts that are decoded, of all hypotheses: a mark that can be read is among the first few.
 constexpr std::size_t kDecoded = 256;
 
+// Bits of evidence, far above what the order of a sum changes.
+constexpr double kRoundingOfEvidence = 1e-6;
+
 class FluxReader {
  public:
   explicit FluxReader(const Key& key) : dither_(key), axes_(axes_guesses()) {
@@ -284,12 +287,17 @@ class FluxReader {
     for (const double sharpness : kSharpness) {
       const SoftBits soft = soft_bits(attempt.guess->measurement, attempt.axes->source, dither_,
                                       step_size(attempt.step), sharpness);
+      const double price = fixed_price_ + attempt.guess->price + attempt.axes->price;
+      std::optional<SoftOrder> order;
       for (const BlockCode& code : codes_) {
-        const auto payload = code.decode(soft);
+        // What no word of the code reaches need not be decoded.
+        const double needed = std::max(kBelieved, best ? best->evidence : 0) + price + code.bits();
+        if (soft.most_evidence() < needed - kRoundingOfEvidence) continue;
+        if (!order) order.emplace(soft);
+        const auto payload = code.decode(*order, needed - kRoundingOfEvidence);
         if (!payload) continue;
         const FluxBits word = code.encode(*payload);
-        const double evidence = soft.evidence(word) - fixed_price_ - attempt.guess->price -
-                                attempt.axes->price - code.bits();
+        const double evidence = soft.evidence(word) - price - code.bits();
         if (evidence < kBelieved || (best && evidence <= best->evidence)) continue;
         best = FluxFound{{*payload, code.bits(), code.content()}, evidence, attempt.guess->undone};
       }

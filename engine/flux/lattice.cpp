@@ -89,6 +89,12 @@ double SoftBits::evidence(std::span<const std::uint8_t> bits) const {
   return nats / M_LN2;
 }
 
+double SoftBits::most_evidence() const {
+  double nats = 0;
+  for (std::size_t i = 0; i < kFunctionals; ++i) nats += base[i] + std::max(ratio[i], 0.0);
+  return nats / M_LN2;
+}
+
 double SoftPhase::log_likelihood(double phase, double sharpness, double log_mean) const {
   const auto component = [&](double place) {
     return std::exp(sharpness * std::cos(2 * M_PI * (place - phase)) - log_mean);

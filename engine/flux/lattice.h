@@ -107,6 +107,9 @@ struct SoftBits {
   // probability that an unmarked mesh gives a word that was fixed before as good a reading.
   // bits[i] is the bit of functional i.
   [[nodiscard]] double evidence(std::span<const std::uint8_t> bits) const;
+
+  // Returns the evidence for the likeliest bits, which no word exceeds.
+  [[nodiscard]] double most_evidence() const;
 };
 
 // Returns the soft values at one step and sharpness. `source[i]` is the functional of the

@@ -29,7 +29,8 @@ TEST(BlockCode, BringsPayloadsOfEverySizeBack) {
       for (std::uint64_t seed = 0; seed < 20; ++seed) {
         const std::uint64_t payload = payload_of(bits, seed);
         const auto used = static_cast<std::size_t>(2 * bits);
-        EXPECT_EQ(code.decode(soft_of(code.encode(payload), used, 0, seed)), payload) << bits;
+        EXPECT_EQ(code.decode(SoftOrder(soft_of(code.encode(payload), used, 0, seed))), payload)
+            << bits;
       }
     }
   }
@@ -43,9 +44,35 @@ TEST(BlockCode, CorrectsFunctionalsThatSayTheWrongBit) {
     const FluxBits word = code.encode(payload);
     const SoftBits soft = soft_of(word, 60, 1.6, seed);
     for (std::size_t i = 0; i < 60; ++i) wrong_bits += (soft.ratio[i] < 0) != (word[i] != 0);
-    EXPECT_EQ(code.decode(soft), payload) << seed;
+    EXPECT_EQ(code.decode(SoftOrder(soft)), payload) << seed;
   }
   EXPECT_GT(wrong_bits, 50);  // more than one a word, so that hard decisions would not do
+}
+
+// A reader that asks for evidence loses none of the words that have it.
+TEST(BlockCode, LeavesOutNothingButWordsOfLessEvidence) {
+  int kept = 0, left_out = 0;
+  for (const int bits : kPayloadBits) {
+    const BlockCode code(Key::trial(), FluxContent::Number, bits);
+    for (std::uint64_t seed = 0; seed < 200; ++seed) {
+      const double noise = static_cast<double>(seed % 8) / 2;
+      const SoftBits soft = soft_of(code.encode(payload_of(bits, seed)), 120, noise, seed);
+      const SoftOrder order(soft);
+      const auto found = code.decode(order);
+      const double least = static_cast<double>(seed % 5) * 0.3 * soft.most_evidence();
+      const bool suffices = found && soft.evidence(code.encode(*found)) >= least;
+      if (suffices) {
+        EXPECT_EQ(code.decode(order, least), found) << bits << " " << seed;
+        ++kept;
+      } else if (found) {
+        const auto other = code.decode(order, least);
+        EXPECT_TRUE(!other || soft.evidence(code.encode(*other)) >= least - 1e-6);
+        ++left_out;
+      }
+    }
+  }
+  EXPECT_GT(kept, 100);
+  EXPECT_GT(left_out, 20);
 }
 
 TEST(BlockCode, SaysNothingWhereAnotherWordIsNearlyAsGood) {
@@ -56,12 +83,12 @@ TEST(BlockCode, SaysNothingWhereAnotherWordIsNearlyAsGood) {
   for (std::size_t i = 0; i < 60; ++i) {
     if (word[i] != other[i]) soft.ratio[i] *= 0.01;  // halfway between the two
   }
-  EXPECT_FALSE(code.decode(soft));
+  EXPECT_FALSE(code.decode(SoftOrder(soft)));
 }
 
 TEST(BlockCode, SaysNothingWithFewerFunctionalsThanBits) {
   const BlockCode code(Key::trial(), FluxContent::Bytes, 32);
-  EXPECT_FALSE(code.decode(soft_of(code.encode(1), 31, 0, 1)));
+  EXPECT_FALSE(code.decode(SoftOrder(soft_of(code.encode(1), 31, 0, 1))));
 }
 
 TEST(BlockCode, OfEachContentAndKeyIsAnother) {
