@@ -1,11 +1,23 @@
 #include "engine/io/base64.h"
 
+#include <algorithm>
+
 #include <sodium.h>
 
 namespace triglyph {
+namespace {
+
+constexpr int kVariant = sodium_base64_VARIANT_ORIGINAL;
+
+// libsodium 1.0.18 takes bytes above 127 for others.
+bool is_of_alphabet(char c) {
+  return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '+' ||
+         c == '/' || c == '=';
+}
+
+}  // namespace
 
 std::string base64_of(std::span<const char> bytes) {
-  constexpr int kVariant = sodium_base64_VARIANT_ORIGINAL;
   std::string text(sodium_base64_ENCODED_LEN(bytes.size(), kVariant), '\0');
   sodium_bin2base64(text.data(), text.size(), reinterpret_cast<const unsigned char*>(bytes.data()),
                     bytes.size(), kVariant);
@@ -14,6 +26,7 @@ std::string base64_of(std::span<const char> bytes) {
 }
 
 bool append_from_base64(std::string_view text, std::vector<char>& out) {
+  if (!std::all_of(text.begin(), text.end(), is_of_alphabet)) return false;
   const std::size_t first = out.size();
   out.resize(first + text.size() / 4 * 3 + 3);
   const bool is_padded = text.ends_with('=') || text.size() % 4 == 0;

@@ -18,7 +18,6 @@ struct GltfFile {
   // A buffer that the JSON holds in base64. Its bytes lie at `place` of the image.
   struct DataUri {
     std::size_t buffer = 0;
-    std::string head;  // up to and with the comma
     std::uint64_t place = 0;
     std::uint64_t size = 0;
   };

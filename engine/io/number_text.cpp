@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <optional>
 #include <system_error>
 
@@ -246,10 +247,12 @@ void choose_plain_powers(NumberStyle& style, const PowerRange& plain, const Powe
   style.most_plain_power = large.has() ? large.least : 400;
 }
 
-// Returns whether the style gives the number, which is not zero, an exponent.
+// Returns whether the style gives the number an exponent.
 bool has_exponent(const NumberStyle& style, double value) {
   if (style.notation != Notation::General) return style.notation == Notation::Scientific;
-  const int power = integer_digits(std::abs(value)) - 1;
+  if (value == 0) return false;
+  const double magnitude = std::min(std::abs(value), std::numeric_limits<double>::max());
+  const int power = integer_digits(magnitude) - 1;
   return power < style.least_plain_power || power >= style.most_plain_power;
 }
 

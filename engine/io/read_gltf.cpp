@@ -156,8 +156,7 @@ class GltfReader {
     const std::size_t first = bytes.size();
     if (!append_from_base64(text, bytes)) object.fail("its data URI is not base64");
     const std::size_t size = bytes.size() - first;
-    file_->data_uris.push_back(
-        {static_cast<std::size_t>(index), std::string(uri.substr(0, comma + 1)), first, size});
+    file_->data_uris.push_back({static_cast<std::size_t>(index), first, size});
     return {first, size, 0};
   }
 

@@ -30,6 +30,27 @@ std::string exact_text(double value) {
   return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
+// Returns what JSON text without line breaks and quotes means: a slash may be written as "\\/", and
+// any character by its number.
+std::string without_escapes(std::string_view text) {
+  std::string plain;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '\\' || i + 1 == text.size()) {
+      plain += text[i];
+      continue;
+    }
+    unsigned number = 0;
+    if (text[++i] == 'u' && i + 4 < text.size()) {
+      std::from_chars(text.data() + i + 1, text.data() + i + 5, number, 16);
+      plain += static_cast<char>(number);
+      i += 4;
+    } else {
+      plain += text[i];
+    }
+  }
+  return plain;
+}
+
 // Walks over the JSON once and notes the places of what changes.
 class JsonEdits {
  public:
@@ -75,8 +96,10 @@ class JsonEdits {
       if (key != "min" && key != "max") continue;
       const bool is_max = key == "max";
       if (std::exchange(has_end[is_max ? 1 : 0], true)) continue;
+      simdjson::ondemand::array numbers;
+      if (field.value().get_array().get(numbers) != simdjson::SUCCESS) continue;  // no bounds
       int axis = 0;
-      for (auto number : field.value().get_array()) {
+      for (auto number : numbers) {
         const std::string_view token = number.raw_json_token();
         for (const BoundsChange& change : changes_) {
           if (of_accessor(change) && change.is_max == is_max && change.axis == axis) {
@@ -98,18 +121,16 @@ class JsonEdits {
       const std::string_view key = field.unescaped_key();
       if (key != "uri" || std::exchange(has_uri, true)) continue;
       const std::string_view token = field.value().raw_json_token();
-      std::string text = "\"" + uri->head + base64_of(image_.subspan(uri->place, uri->size));
-      const std::size_t last = token.find_last_of('"');
-      // As many signs of padding as the file has: some leave them out.
-      if (last > 0 && token[last - 1] != '=') text.erase(text.find_last_not_of('=') + 1);
-      text += '"';
-      const std::string_view old = token.substr(0, last + 1);
-      // A slash may be written as "\/"; where the bytes are the same, so is the text.
-      std::string plain;
-      for (std::size_t i = 0; i < old.size(); ++i) {
-        if (old[i] != '\\') plain += old[i];
+      const std::size_t comma = token.find(','), quote = token.find_last_of('"');
+      if (comma == std::string_view::npos || quote < comma) {
+        throw Error(ErrorCode::Unsupported, {}, "buffers[" + std::to_string(index) + "]",
+                    "a data URI whose comma is escaped");
       }
-      if (plain != text) add(old, std::move(text));
+      const std::string_view old = token.substr(comma + 1, quote - comma - 1);
+      std::string text = base64_of(image_.subspan(uri->place, uri->size));
+      // As many signs of padding as the file has: some leave them out.
+      if (!old.ends_with('=')) text.erase(text.find_last_not_of('=') + 1);
+      if (without_escapes(old) != text) add(old, std::move(text));
     }
   }
 

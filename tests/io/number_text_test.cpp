@@ -117,6 +117,8 @@ TEST(LearnStyle, WritesExponentsAsTheFileDoes) {
   EXPECT_EQ(step_at(percent_g, 1189934.2), 10.0);
   const NumberStyle java = style_of({"-5.8693124E-5", "7.0E-5", "1.25", "1.0E7", "0.001234"});
   EXPECT_EQ(format(java, 5.8e-5), "5.8E-5");
+  EXPECT_EQ(round_to(java, 0.0), 0.0);
+  EXPECT_GT(round_to(java, 1.79e308), 1e308);  // near the largest double
   EXPECT_EQ(format(java, 2.5e-3), "0.0025");
   EXPECT_EQ(format(java, 2.5e-4), "2.5E-4");
   EXPECT_EQ(format(java, 3e-4), "3.0E-4");

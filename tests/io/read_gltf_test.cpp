@@ -172,6 +172,8 @@ TEST(ReadGltf, RefusesWhatIsWrongAtItsPlace) {
       {"/buffers/0/uri", "file:///etc/passwd", "unsupported buffers[0]"},
       {"/buffers/0/uri", "data:text/plain,abc", "unsupported buffers[0]"},
       {"/buffers/0/uri", "data:x;base64,A?==", "malformed buffers[0]"},
+      {"/buffers/0/uri", "data:x;base64,AAAA\xC5\xBE" + std::string(58, 'A'),
+       "malformed buffers[0]"},
       {"/meshes/0/primitives/0/mode", 9, "malformed meshes[0].primitives[0]"},
       {"/meshes/0/primitives/0/attributes/POSITION", 5, "malformed "},
       {"/meshes/0/primitives/0/attributes", 5, "malformed meshes[0].primitives[0]"},
@@ -182,6 +184,36 @@ TEST(ReadGltf, RefusesWhatIsWrongAtItsPlace) {
     json[Json::json_pointer(place)] = value;
     EXPECT_EQ(outcome_of(json), expected) << place << " " << value;
   }
+}
+
+// Bounds that are no numbers are nobody's bounds, and stay.
+TEST(ReadGltf, PassesOverBoundsOfAnotherKind) {
+  Json json = triangle_json();
+  json["accessors"][0]["min"] = "low";
+  json["accessors"][0].erase("max");
+  const std::string text =
+      moved(read_text(glb_of(json.dump(), triangle_data()), "a.glb"), {1, 2, 3});
+  EXPECT_EQ(parts_of_gltf(text, true).json, json);
+  EXPECT_EQ(read_text(text, "a.glb").mesh().positions[0], Vec3(1, 2, 3));
+}
+
+// JSON may write characters in several ways; those of a data URI that stay are written as before.
+TEST(ReadGltf, KeepsTheEscapesOfADataUri) {
+  Json json = triangle_json();
+  std::string data = triangle_data();
+  data += "\xff\xff\xff\xff";  // slashes in base64
+  json["buffers"][0]["byteLength"] = data.size();
+  json["buffers"][0]["uri"] =
+      "data:application\\/"
+      "octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAABAAIA"
+      "AAD\\/\\u002f\\/\\/";
+  std::string text = json.dump();
+  while (text.find("\\\\") != std::string::npos) text.replace(text.find("\\\\"), 2, "\\");
+  const MeshFile file = read_text(text, "a.gltf");
+  EXPECT_EQ(moved(file, {0, 0, 0}), text);
+  const std::string out = moved(file, {0, 0, 1});
+  EXPECT_NE(out.find("application\\/octet"), std::string::npos);
+  EXPECT_EQ(read_text(out, "a.gltf").mesh().positions[1], Vec3(1, 0, 1));
 }
 
 TEST(ReadGltf, RefusesBrokenContainers) {
