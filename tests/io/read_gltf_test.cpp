@@ -206,7 +206,7 @@ TEST(ReadGltf, KeepsTheEscapesOfADataUri) {
   json["buffers"][0]["uri"] =
       "data:application\\/"
       "octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAABAAIA"
-      "AAD\\/\\u002f\\/\\/";
+      "AAD\\/\\u002f\\/\\/\\/";
   std::string text = json.dump();
   while (text.find("\\\\") != std::string::npos) text.replace(text.find("\\\\"), 2, "\\");
   const MeshFile file = read_text(text, "a.gltf");
