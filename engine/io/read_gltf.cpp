@@ -422,9 +422,9 @@ class GltfReader {
       return;
     }
     for (std::size_t i = 2; i < corners_.size(); ++i) {
-      const bool is_odd = i % 2 != 0;
+      const bool is_odd = mode == kStrip && i % 2 != 0;
       const std::uint32_t first = mode == kFan ? corners_[0] : corners_[i - (is_odd ? 1 : 2)];
-      const std::uint32_t second = corners_[mode == kFan || !is_odd ? i - 1 : i - 2];
+      const std::uint32_t second = corners_[i - (is_odd ? 2 : 1)];
       faces.corners.insert(faces.corners.end(), {first, second, corners_[i]});
       faces.ends.push_back(static_cast<std::uint32_t>(faces.corners.size()));
     }
