@@ -164,7 +164,9 @@ void RecordsFile::finish() {
   const std::vector<Place> lines = sorted_lines(stream);
   std::uint64_t end = 0;  // of the lines so far, if they lie as they should
   for (const Place& line : lines) end = line.begin == end ? end + line.size + 1 : ~std::uint64_t{0};
-  if (end == fs::file_size(path_, error)) return;
+  const std::uint64_t size = fs::file_size(path_, error);  // on a failure as large as no end is
+  if (error) throw Error(ErrorCode::Unwritable, path_, "", "the records: " + error.message());
+  if (end == size) return;
   OutputFile sorted(path_);
   std::string text;
   stream.clear();
