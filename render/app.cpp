@@ -22,6 +22,7 @@
 #include "render/arguments.h"
 #include "render/colours.h"
 #include "render/comparison.h"
+#include "render/mesh_as_cut.h"
 #include "render/paper_figure.h"
 #include "render/picture_file.h"
 
@@ -79,7 +80,7 @@ void draw_pair(const RenderArguments& arguments, const fs::path& original, const
     }
   };
   if (marked.empty()) return draw_all(first.mesh());
-  draw_all(MeshFile::open(marked).mesh());
+  draw_all(mesh_as_cut_in(first, MeshFile::open(marked)));
 }
 
 volatile std::sig_atomic_t stop_requested = 0;
