@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -60,6 +61,11 @@ struct RewrittenGltf {
 // Returns a new file that holds the mesh: one mesh, one node, positions as floats, indices as
 // 32-bit integers. Not binary: the buffer is a data URI. O(n).
 [[nodiscard]] std::vector<char> export_gltf(const Mesh& mesh, bool is_binary);
+
+// Returns how many bytes the accessors of a .glb take, decoded: what of it is geometry, and not
+// pictures. Reads its JSON alone. Nothing for another file, and where it cannot be read. O(bytes of
+// the JSON).
+[[nodiscard]] std::optional<std::uint64_t> geometry_bytes_of_glb(const std::filesystem::path& path);
 
 // Returns the names of the image files that a .gltf or .glb refers to, percent-decoded; none that
 // is a data URI or has a scheme. Throws Error as reading the file does. O(bytes of the JSON).

@@ -1,6 +1,7 @@
 #include "engine/io/gltf_json.h"
 
-#include <cstring>
+#include <algorithm>
+#include <fstream>
 #include <utility>
 
 #include "engine/base/error.h"
@@ -155,6 +156,27 @@ GltfObject parse_gltf(simdjson::dom::parser& parser, const Source& source,
   return gltf;
 }
 
+std::uint64_t components_of(const GltfObject& accessor) {
+  const auto type = accessor.text("type");
+  constexpr std::pair<std::string_view, std::uint64_t> kTypes[] = {
+      {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}};
+  for (const auto& [name, count] : kTypes) {
+    if (type == name) return count;
+  }
+  accessor.fail("has no known type");
+}
+
+Scalar component_type_of(const GltfObject& accessor) {
+  constexpr std::pair<std::uint64_t, Scalar> kTypes[] = {
+      {5120, Scalar::Int8},   {5121, Scalar::UInt8},  {5122, Scalar::Int16},
+      {5123, Scalar::UInt16}, {5125, Scalar::UInt32}, {5126, Scalar::Float32}};
+  const std::uint64_t type = accessor.needed_number("componentType");
+  for (const auto& [number, scalar] : kTypes) {
+    if (type == number) return scalar;
+  }
+  accessor.fail("has no known componentType");
+}
+
 std::string percent_decoded(std::string_view uri) {
   const auto digit = [](char c) {
     return c >= '0' && c <= '9'   ? c - '0'
@@ -172,6 +194,32 @@ std::string percent_decoded(std::string_view uri) {
     }
   }
   return decoded;
+}
+
+std::optional<std::uint64_t> geometry_bytes_of_glb(const std::filesystem::path& path) try {
+  constexpr std::uint32_t kMostJson = 1U << 28;  // of files that are worth looking into
+  std::vector<char> bytes(kGlbHeader + kChunkHeader);
+  std::ifstream file(path, std::ios::binary);
+  const auto read = [&](std::size_t from) {
+    return static_cast<bool>(
+        file.read(bytes.data() + from, static_cast<std::streamsize>(bytes.size() - from)));
+  };
+  const bool is_glb = read(0) && std::string_view(bytes.data(), 4) == "glTF";
+  const std::uint32_t size = is_glb ? word_at({bytes, path}, kGlbHeader) : 0;
+  if (!is_glb || size > kMostJson) return std::nullopt;
+  bytes.resize(bytes.size() + size);
+  if (!read(kGlbHeader + kChunkHeader)) return std::nullopt;
+  simdjson::dom::parser parser;
+  const GltfChunks chunks{true, kGlbHeader + kChunkHeader, size, std::nullopt, 0};
+  double total = 0;
+  for (const GltfObject& accessor : parse_gltf(parser, {bytes, path}, chunks).items("accessors")) {
+    total += static_cast<double>(accessor.needed_number("count")) *
+             static_cast<double>(components_of(accessor) * size_of(component_type_of(accessor)));
+  }
+  constexpr double kMost = 0x1p50;  // a count that is wrong is found when the file is read
+  return static_cast<std::uint64_t>(std::min(total, kMost));
+} catch (const Error&) {
+  return std::nullopt;
 }
 
 std::vector<std::string> images_of_gltf(std::span<const char> bytes,

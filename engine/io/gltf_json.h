@@ -60,6 +60,11 @@ struct GltfChunks {
 [[nodiscard]] GltfObject parse_gltf(simdjson::dom::parser& parser, const Source& source,
                                     const GltfChunks& chunks);
 
+// Return the type of an accessor, and the number of its components: 3 for VEC3. Throw Error
+// Malformed.
+[[nodiscard]] Scalar component_type_of(const GltfObject& accessor);
+[[nodiscard]] std::uint64_t components_of(const GltfObject& accessor);
+
 // Returns the text of a URI with "%20" as a blank and so on.
 [[nodiscard]] std::string percent_decoded(std::string_view uri);
 

@@ -39,35 +39,6 @@ struct GltfElements {
   [[nodiscard]] std::uint64_t end() const { return place + (count - 1) * stride + size(); }
 };
 
-std::uint64_t components_of(const GltfObject& accessor) {
-  const auto type = accessor.text("type");
-  constexpr std::pair<std::string_view, std::uint64_t> kTypes[] = {
-      {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}};
-  for (const auto& [name, count] : kTypes) {
-    if (type == name) return count;
-  }
-  accessor.fail("has no known type");
-}
-
-Scalar component_type_of(const GltfObject& accessor) {
-  switch (accessor.needed_number("componentType")) {
-    case 5120:
-      return Scalar::Int8;
-    case 5121:
-      return Scalar::UInt8;
-    case 5122:
-      return Scalar::Int16;
-    case 5123:
-      return Scalar::UInt16;
-    case 5125:
-      return Scalar::UInt32;
-    case 5126:
-      return Scalar::Float32;
-    default:
-      accessor.fail("has no known componentType");
-  }
-}
-
 class GltfReader {
  public:
   explicit GltfReader(const Source& source)
@@ -335,7 +306,7 @@ class GltfReader {
     const std::optional<std::uint64_t> indices = primitive.number("indices");
     const std::uint64_t key = indices.value_or(accessors_.size());
     if (!read_primitives_.emplace(*position, key, mode).second) return;  // as another mesh has it
-    for (const GltfObject& target : morph_targets(primitive)) {
+    for (const GltfObject& target : primitive.items("targets")) {
       if (const auto delta = target.number("POSITION")) morphs_.insert(*delta);
     }
     if (const auto extensions = primitive.child("extensions")) {
@@ -347,10 +318,6 @@ class GltfReader {
     if (mode < kTriangles) return;  // points and lines move along
     read_corners(primitive, vertices, indices);
     add_triangles(mode);
-  }
-
-  static std::vector<GltfObject> morph_targets(const GltfObject& primitive) {
-    return primitive.items("targets");
   }
 
   // Reads the vertices of a primitive's corners.

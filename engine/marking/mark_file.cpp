@@ -12,6 +12,7 @@
 #include "engine/base/stop.h"
 #include "engine/base/text.h"
 #include "engine/io/file_bytes.h"
+#include "engine/io/gltf.h"
 #include "engine/marking/copies.h"
 #include "engine/marking/extract.h"
 #include "engine/marking/mark.h"
@@ -464,6 +465,13 @@ std::uint64_t estimate_memory(std::uint64_t file_bytes, const std::filesystem::p
   const Format& format = known == kFormats.end() ? kFormats.front() : *known;
   constexpr std::uint64_t kProgram = std::uint64_t{1} << 20;
   std::uint64_t bytes = kProgram + file_bytes * format.memory;
+  if (ending == ".glb") {
+    // Most of many files is pictures, which are read and written, but not worked on: twice their
+    // size was measured.
+    const std::uint64_t geometry = geometry_bytes_of_glb(mesh).value_or(file_bytes);
+    bytes = kProgram + file_bytes / 2 * 5 + geometry * format.memory;
+    file_bytes = geometry;
+  }
   if (work == MeshWork::Flux) {
     // Derivatives, frame rows and the thin plate: 1,200 bytes a vertex were measured at 1.1
     // and 1.25 million triangles, for a file of 81 bytes a vertex or more, with a quarter added.

@@ -173,8 +173,8 @@ enum class MeshWork : std::uint8_t {
 [[nodiscard]] MeshWork work_of(const MarkRequest& request);
 
 // Returns an upper estimate of the memory, in bytes, that work on a file takes, from its size and
-// its extension (in any case). Measured on common meshes; a file that is mostly comments takes
-// less.
+// its extension (in any case), and of a .glb from its JSON as well, if it is there. Measured on
+// common meshes; a file that is mostly comments takes less.
 [[nodiscard]] std::uint64_t estimate_memory(std::uint64_t file_bytes,
                                             const std::filesystem::path& mesh, MeshWork work);
 

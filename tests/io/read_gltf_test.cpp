@@ -12,6 +12,7 @@
 #include <meshoptimizer.h>
 
 #include "engine/io/export_mesh.h"
+#include "engine/io/gltf.h"
 #include "engine/samples/sample_shapes.h"
 #include "tests/io/mesh_text.h"
 #include "tests/io/random_gltf.h"
@@ -279,6 +280,17 @@ TEST(ReadGltf, ReadsBuffersBesideItButDoesNotMoveThem) {
   const MeshFile file = MeshFile::open(folder / "a.gltf");
   EXPECT_EQ(file.mesh().triangles.size(), 1U);
   EXPECT_NE(file.why_fixed().find("points 1.bin"), std::string::npos);
+}
+
+TEST(ReadGltf, TellsGeometryFromPictures) {
+  const TempFolder folder;
+  const std::string pictures(100000, 'p');
+  const auto glb =
+      folder.write("a.glb", glb_of(triangle_json().dump(), triangle_data() + pictures));
+  EXPECT_EQ(geometry_bytes_of_glb(glb), 3 * 12 + 3 * 2);
+  EXPECT_FALSE(geometry_bytes_of_glb(folder.write("b.glb", "glTF")));
+  EXPECT_FALSE(geometry_bytes_of_glb(folder.write("c.glb", glb_of("{}", ""))));
+  EXPECT_FALSE(geometry_bytes_of_glb(folder / "none.glb"));
 }
 
 TEST(ReadGltf, ReadsMeshoptCompression) {
