@@ -1,13 +1,13 @@
 #include "manifests/inputs.h"
 
 #include <algorithm>
-#include <array>
 #include <iterator>
 #include <string_view>
 #include <unordered_set>
 
 #include "engine/base/error.h"
 #include "engine/base/text.h"
+#include "engine/io/mesh_file.h"
 #include "manifests/folder_walk.h"
 #include "manifests/manifest.h"
 #include "manifests/resume.h"
@@ -82,9 +82,8 @@ std::vector<NamedFile> files_named(const std::string& name, const fs::path& outp
 }  // namespace
 
 bool is_mesh_name(const fs::path& path) {
-  constexpr std::array<std::string_view, 6> kEndings = {".obj", ".off", ".ply",
-                                                        ".stl", ".glb", ".gltf"};
-  return std::find(kEndings.begin(), kEndings.end(), lower_case_ending(path)) != kEndings.end();
+  const auto endings = mesh_endings();
+  return std::find(endings.begin(), endings.end(), lower_case_ending(path)) != endings.end();
 }
 
 void check_name(const std::string& name) {

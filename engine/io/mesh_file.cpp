@@ -9,6 +9,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
+#include "engine/base/text.h"
 #include "engine/geometry/box.h"
 #include "engine/io/byte_parts.h"
 #include "engine/io/file_bytes.h"
@@ -25,24 +26,43 @@ constexpr std::size_t kStyleSample = 4096;    // vertices from which the number 
 constexpr int kMostDigits = 17;               // a double holds no more
 constexpr std::size_t kPatchBlock = 1 << 16;  // vertices patched by one thread
 
+struct Reader {
+  std::string_view ending;
+  FileContent (*read)(const Source& source);
+};
+constexpr std::array<Reader, 6> kReaders = {{{".obj", read_obj},
+                                             {".off", read_off},
+                                             {".ply", read_ply},
+                                             {".stl", read_stl},
+                                             {".gltf", read_gltf},
+                                             {".glb", read_gltf}}};
+constexpr auto kEndings = [] {
+  std::array<std::string_view, kReaders.size()> endings;
+  for (std::size_t i = 0; i < endings.size(); ++i) endings[i] = kReaders[i].ending;
+  return endings;
+}();
+
+// Endings of meshes in formats that other tools convert.
+constexpr std::array<std::string_view, 14> kConvertible = {
+    ".3ds",  ".3mf",  ".abc",  ".blend", ".dae", ".fbx", ".usd",
+    ".usda", ".usdc", ".usdz", ".vrml",  ".wrl", ".x",   ".x3d"};
+
 FileContent read_content(const Source& source) {
-  std::string ending = source.path.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-  if (ending == ".obj") return read_obj(source);
-  if (ending == ".off") return read_off(source);
-  if (ending == ".ply") return read_ply(source);
-  if (ending == ".stl") return read_stl(source);
-  if (ending == ".glb" || ending == ".gltf") return read_gltf(source);
-  constexpr std::array kConvertible = {".3ds",  ".3mf",  ".abc",  ".blend", ".dae", ".fbx", ".usd",
-                                       ".usda", ".usdc", ".usdz", ".vrml",  ".wrl", ".x",   ".x3d"};
-  const bool is_known =
-      std::find(kConvertible.begin(), kConvertible.end(), ending) != kConvertible.end();
-  throw Error(ErrorCode::Unsupported, source.path, "",
-              is_known
-                  ? "'" + ending + "' is not read; export the mesh as .glb, .obj, .ply or .stl, " +
-                        "for example with Blender or assimp"
-                  : "unknown ending '" + ending + "' (known: .obj .off .ply .stl .gltf .glb)");
+  const std::string ending = lower_case_ending(source.path);
+  for (const Reader& reader : kReaders) {
+    if (reader.ending == ending) return reader.read(source);
+  }
+  std::string why = "'";
+  why.append(ending);
+  if (std::find(kConvertible.begin(), kConvertible.end(), ending) != kConvertible.end()) {
+    why.append("' is not read; export the mesh as .glb, .obj, .ply or .stl, ");
+    why.append("for example with Blender or assimp");
+  } else {
+    why.append("' is an unknown ending (known:");
+    for (const std::string_view known : kEndings) why.append(" ").append(known);
+    why.append(")");
+  }
+  throw Error(ErrorCode::Unsupported, source.path, "", why);
 }
 
 // Returns the number token at `begin`, which the reader has accepted.
@@ -56,6 +76,10 @@ std::string_view number_at(std::span<const char> bytes, std::uint64_t begin) {
 }
 
 }  // namespace
+
+std::span<const std::string_view> mesh_endings() noexcept {
+  return kEndings;
+}
 
 struct MeshFile::Content {
   FileBytes file;

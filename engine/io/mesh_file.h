@@ -21,12 +21,15 @@ enum class FileFormat { Obj, Off, PlyAscii, PlyLittle, PlyBig, StlAscii, StlBina
 // Returns the stable name that records use ("ply binary_little_endian").
 [[nodiscard]] std::string_view name_of(FileFormat format) noexcept;
 
+// Returns the endings of the files that MeshFile reads, in lower case.
+[[nodiscard]] std::span<const std::string_view> mesh_endings() noexcept;
+
 class MeshFile {
  public:
-  // Maps the file and reads it in one pass. The extension (.obj, .off, .ply, .stl, .gltf, .glb in
-  // any case) names the format; ASCII and binary variants are recognised by their structure. Throws
-  // Error: Unreadable (does not exist, no permission, not a regular file, empty), Malformed (with
-  // line or byte), Unsupported (unknown extension or variant). O(bytes).
+  // Maps the file and reads it in one pass. The extension (one of mesh_endings(), in any case)
+  // names the format; ASCII and binary variants are recognised by their structure. Throws Error:
+  // Unreadable (does not exist, no permission, not a regular file, empty), Malformed (with line or
+  // byte), Unsupported (unknown extension or variant). O(bytes).
   [[nodiscard]] static MeshFile open(const std::filesystem::path& path);
 
   // Reads a file that is in memory. `name` supplies the extension and appears in messages. Throws

@@ -340,8 +340,8 @@ NumberStyle learn_style(std::span<const std::string_view> tokens) {
                    (has_trailing_zero || tokens.size() > kMinFixedTokens);
   style.trims_zeros = !has_trailing_zero && !style.is_fixed;
   style.drops_leading_zero = bare_points > zero_points;
-  style.has_plus_exponent = plain_powers == 0 && style.exponent_digits > 1;
-  if (large.has() && plain_powers == 0) style.has_plus_exponent = true;
+  // Where no large number tells, those who pad exponents write the plus.
+  style.has_plus_exponent = plain_powers == 0 && (style.exponent_digits > 1 || large.has());
   style.has_plus_sign = pluses > 0 && pluses + minuses == tokens.size();
   if (exponents > 0) {
     style.notation = exponents == numbers ? Notation::Scientific : Notation::General;
@@ -377,8 +377,11 @@ double step_at(const NumberStyle& style, double value) {
 }
 
 double round_to(const NumberStyle& style, double value) {
-  if (style.notation == Notation::Fixed ||
-      (style.notation == Notation::General && !has_exponent(style, value * 1.1))) {
+  // A little above the number too, since rounding may carry it to the first with an exponent.
+  constexpr double kAbove = 1.1;
+  const bool is_plain = style.notation == Notation::Fixed || (style.notation == Notation::General &&
+                                                              !has_exponent(style, value * kAbove));
+  if (is_plain) {
     const int decimals = decimals_at(style, value);
     if (const auto scaled = scaled_integer(std::abs(value), decimals)) {
       const double rounded = static_cast<double>(*scaled) / kPower[decimals];

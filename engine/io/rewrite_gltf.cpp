@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <map>
 #include <string>
 #include <utility>
 
@@ -30,7 +31,7 @@ std::string exact_text(double value) {
   return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
-// Returns what JSON text without line breaks and quotes means: a slash may be written as "\\/", and
+// Returns what JSON text without line breaks and quotes means: a slash may be written as "\/", and
 // any character by its number.
 std::string without_escapes(std::string_view text) {
   std::string plain;
@@ -56,7 +57,9 @@ class JsonEdits {
  public:
   JsonEdits(const GltfFile& gltf, std::span<const char> image,
             std::span<const BoundsChange> changes)
-      : gltf_(gltf), image_(image), changes_(changes) {}
+      : gltf_(gltf), image_(image) {
+    for (const BoundsChange& change : changes) changes_[change.accessor].push_back(change);
+  }
 
   std::vector<JsonEdit> find() {
     const simdjson::padded_string json(image_.data() + gltf_.json, gltf_.json_size);
@@ -88,8 +91,8 @@ class JsonEdits {
   }
 
   void edit_accessor(simdjson::ondemand::object accessor, std::size_t index) {
-    const auto of_accessor = [&](const BoundsChange& c) { return c.accessor == index; };
-    if (std::none_of(changes_.begin(), changes_.end(), of_accessor)) return;
+    const auto changes = changes_.find(index);
+    if (changes == changes_.end()) return;
     bool has_end[2] = {false, false};
     for (auto field : accessor) {
       const std::string_view key = field.unescaped_key();
@@ -101,8 +104,8 @@ class JsonEdits {
       int axis = 0;
       for (auto number : numbers) {
         const std::string_view token = number.raw_json_token();
-        for (const BoundsChange& change : changes_) {
-          if (of_accessor(change) && change.is_max == is_max && change.axis == axis) {
+        for (const BoundsChange& change : changes->second) {
+          if (change.is_max == is_max && change.axis == axis) {
             add(token, exact_text(change.value));
           }
         }
@@ -136,7 +139,7 @@ class JsonEdits {
 
   const GltfFile& gltf_;
   std::span<const char> image_;
-  std::span<const BoundsChange> changes_;
+  std::map<std::size_t, std::vector<BoundsChange>> changes_;  // by accessor
   const char* start_ = nullptr;
   std::vector<JsonEdit> edits_;
 };
