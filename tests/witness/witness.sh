@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # witness.sh BUILD: what other programs make of marked glTF. Marks meshes as .glb, lets gltf-validator
-# judge them (no more errors than before), sends them through Blender, assimp and gltfpack, and reads
-# the mark from what comes back. Installs assimp-utils, blender, gltfpack, nodejs and gltf-validator
-# where they are missing. Prints a line for each file and fails if a mark is lost or a file not valid.
+# judge them (no more errors than before), loads them with three.js (the same triangles, points near
+# where they were), sends them through Blender, assimp and gltfpack, and reads the mark from what comes
+# back. Installs assimp-utils, blender, gltfpack, nodejs, gltf-validator and three where they are missing. Prints a line for each file and fails if a mark is lost or a file not valid.
 set -euo pipefail
 build=$(cd "$1" && pwd)
 here=$(cd "$(dirname "$0")" && pwd)
@@ -15,7 +15,8 @@ command -v blender assimp gltfpack node npm >/dev/null ||
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
-[[ -d node_modules/gltf-validator ]] || npm install --silent --no-fund --no-audit gltf-validator >/dev/null
+npm install --silent --no-fund --no-audit gltf-validator three >/dev/null
+cp "$here/three_compare.mjs" .
 
 errors_of() {
   node -e 'require("gltf-validator").validateBytes(new Uint8Array(require("fs").readFileSync(process.argv[1])))
@@ -47,6 +48,12 @@ for mesh in in/*.glb; do
   after=$(errors_of "$marked")
   if ((after > before)); then
     echo "FAILED  $name: gltf-validator finds $after errors, $before before"
+    failures=$((failures + 1))
+  fi
+  if moved=$(node three_compare.mjs "$mesh" "$marked" 2>&1 | tail -1) && [[ $moved =~ ^[01]\.[0-9]+$ ]]; then
+    echo "ok      $name by three.js: the same triangles, points moved by $moved % at most"
+  else
+    echo "FAILED  $name by three.js: $moved"
     failures=$((failures + 1))
   fi
   blender -b --python "$here/blender_convert.py" -- "$marked" "$name-blender".{glb,obj,ply,stl} >"$name.log" 2>&1 ||
