@@ -78,6 +78,7 @@ std::unique_ptr<CLI::App> make_app(Action& action) {
   add_extract_verb(*app, action);
   add_trace_verb(*app, action);
   add_verify_verb(*app, action);
+  add_sweep_verb(*app, action);
   add_measure_verb(*app, action);
   add_render_verb(*app, action);
   add_attack_verb(*app, action);

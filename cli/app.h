@@ -23,7 +23,9 @@ inline constexpr std::array<ExitCode, 6> kExitCodes{
      {kFatal, "The run could not go on."},
      {kUsageError, "The arguments, the key file or the manifest are wrong; nothing was done."},
      {kSomeFailed, "The run finished, but some meshes were refused, unreadable or altered."},
-     {kNoMark, "Every file was read, but some carry no mark (extract) or name nobody (trace)."},
+     {kNoMark,
+      "Every file was read, but some carry no mark (extract), name nobody (trace) or changed "
+      "(sweep)."},
      {kInterrupted, "The run was interrupted; every file that is there is whole."}}};
 
 // Runs the program. Does not throw.

@@ -184,10 +184,12 @@ int RunTally::code() const {
   return failed() > 0 ? kSomeFailed : kDone;
 }
 
-LoggedRun::LoggedRun(Ledger* ledger, const WorkOrder& order, std::string_view verb)
+LoggedRun::LoggedRun(Ledger* ledger, const WorkOrder& order, std::string_view verb,
+                     std::optional<std::int64_t> unfinished)
     : ledger_(ledger), board_(*order.board) {
   if (ledger_ == nullptr) return;
   std::atomic<std::uint64_t>& known = order.board->counters[kRunId];
+  if (known == 0 && unfinished) known = static_cast<std::uint64_t>(*unfinished);
   if (known == 0) {
     LedgerRun run;
     run.verb = verb;

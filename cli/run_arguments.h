@@ -83,6 +83,7 @@ class RunTally {
   // kDone.
   [[nodiscard]] int code() const;
 
+  [[nodiscard]] bool gave_up() const { return board_.gave_up(); }
   [[nodiscard]] std::uint64_t failed() const;
   [[nodiscard]] std::uint64_t counted(std::size_t kind) const;
 
@@ -97,9 +98,10 @@ class RunTally {
 // A run in a ledger, from its begin to its end; does nothing where there is no ledger.
 class LoggedRun {
  public:
-  // Goes on with the run of an earlier worker if the order is not the first. The order and its
-  // board must outlive the object.
-  LoggedRun(Ledger* ledger, const WorkOrder& order, std::string_view verb);
+  // Goes on with the run of an earlier worker if the order is not the first, or else with the
+  // unfinished one, if any. The order and its board must outlive the object.
+  LoggedRun(Ledger* ledger, const WorkOrder& order, std::string_view verb,
+            std::optional<std::int64_t> unfinished = std::nullopt);
   [[nodiscard]] std::int64_t id() const { return id_; }
 
   // Notes what was found in the file whose result is being delivered; `result` is what --json

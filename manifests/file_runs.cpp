@@ -12,13 +12,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A file to work on. Derived classes hold the result.
-struct FileItem : FlowItem {
-  fs::path file;
-  std::optional<FileFailure> failure;
-  bool is_done = false;
-};
-
 // Calls the work, and makes a failure of its exception.
 template <typename Work>
 void attempt(FileItem& item, const Work& work) {
@@ -104,6 +97,13 @@ struct PairItem final : FileItem {
 };
 
 }  // namespace
+
+void run_file_items(const std::function<std::unique_ptr<FileItem>()>& source,
+                    const std::function<void(FileItem&)>& work,
+                    const std::function<void(FileItem&)>& deliver, const RunContext& context,
+                    const std::atomic<bool>& stop) {
+  run_files<FileItem>(source, work, deliver, context, stop);
+}
 
 void read_files(std::span<const fs::path> files, std::span<const Encoding> encodings,
                 std::span<const Key> keys, const RunContext& context,

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -27,6 +28,21 @@ struct FileFailure {
   FileStatus status = FileStatus::Failed;
   std::string error;  // one line naming file and place
 };
+
+// A file to work on. Derived classes hold the result.
+struct FileItem : FlowItem {
+  std::filesystem::path file;
+  std::optional<FileFailure> failure = {};
+  bool is_done = false;  // not set by the work
+};
+
+// Runs `work` for every item that the source returns before null, in parallel, and `deliver` in
+// their order, one call at a time. An exception of `work` becomes the failure of its item, as does
+// the death of an earlier worker; one of the source or of `deliver` ends the run and is rethrown.
+void run_file_items(const std::function<std::unique_ptr<FileItem>()>& source,
+                    const std::function<void(FileItem&)>& work,
+                    const std::function<void(FileItem&)>& deliver, const RunContext& context,
+                    const std::atomic<bool>& stop);
 
 // The result of reading one file: a reading or a failure.
 struct ReadResult {

@@ -26,7 +26,7 @@ constexpr int kApplicationId = 0x54474c59;
 constexpr int kBusyTimeout = 20000;
 
 // Step i leads from schema i to schema i + 1. Steps are never changed, only added.
-constexpr std::array<const char*, 3> kSteps = {
+constexpr std::array<const char*, 4> kSteps = {
     R"sql(
 CREATE TABLE runs (
   id INTEGER PRIMARY KEY AUTOINCREMENT,
@@ -80,12 +80,27 @@ CREATE TABLE results (
   PRIMARY KEY (run, place)
 ) WITHOUT ROWID;
 )sql",
-    "CREATE INDEX marks_by_message ON marks (message_hex);"};
+    "CREATE INDEX marks_by_message ON marks (message_hex);",
+    R"sql(
+CREATE TABLE states (
+  target BLOB PRIMARY KEY,
+  state TEXT NOT NULL,
+  change TEXT NOT NULL,
+  expected TEXT NOT NULL,
+  hash TEXT NOT NULL,
+  accepted INTEGER NOT NULL,
+  line TEXT NOT NULL,
+  run INTEGER NOT NULL REFERENCES runs (id),
+  checked TEXT NOT NULL DEFAULT (strftime('%Y-%m-%dT%H:%M:%SZ', 'now'))
+) WITHOUT ROWID;
+)sql"};
 constexpr int kSchema = static_cast<int>(kSteps.size());
 
 constexpr const char* kItemColumns =
-    "SELECT target, source, input_hash, task, key, status, output_hash, record, run, place "
-    "FROM items ";
+    "SELECT target, source, input_hash, task, key, status, output_hash, record, run, place, "
+    "finished FROM items ";
+constexpr const char* kStateColumns =
+    "SELECT target, state, change, expected, hash, accepted, line, run FROM states ";
 constexpr const char* kMarkColumns =
     "SELECT number, message_hex, recipient, mesh, out, scheme, options, key, input_hash, "
     "output_hash, issued FROM marks ";
@@ -264,7 +279,13 @@ LedgerItem item_in(const LedgerStatement& row) {
           row.text_at(2),   row.text_at(3),
           row.text_at(4),   row.text_at(5),
           row.text_at(6),   row.text_at(7),
-          row.number_at(8), static_cast<std::uint64_t>(row.number_at(9))};
+          row.number_at(8), static_cast<std::uint64_t>(row.number_at(9)),
+          row.text_at(10)};
+}
+
+LedgerState state_in(const LedgerStatement& row) {
+  return {row.text_at(0), row.text_at(1),        row.text_at(2), row.text_at(3),
+          row.text_at(4), row.number_at(5) != 0, row.text_at(6), row.number_at(7)};
 }
 
 LedgerMark mark_in(const LedgerStatement& row) {
@@ -381,6 +402,29 @@ void Ledger::note(const LedgerResult& result) {
       .step();
 }
 
+void Ledger::put_state(const LedgerState& state) {
+  const std::lock_guard lock(database_->mutex);
+  LedgerStatement(*database_,
+                  "INSERT OR REPLACE INTO states (target, state, change, expected, hash, accepted, "
+                  "line, run) VALUES (?, ?, ?, ?, ?, ?, ?, ?)")
+      .bytes(state.target)
+      .text(state.state)
+      .text(state.change)
+      .text(state.expected)
+      .text(state.hash)
+      .number(state.is_accepted ? 1 : 0)
+      .text(state.line)
+      .number(state.run)
+      .step();
+}
+
+std::optional<LedgerState> Ledger::state_of(std::string_view target) const {
+  const std::lock_guard lock(database_->mutex);
+  LedgerStatement row(*database_, std::string(kStateColumns) + "WHERE target = ?");
+  if (!row.bytes(target).step()) return std::nullopt;
+  return state_in(row);
+}
+
 std::optional<LedgerMark> Ledger::mark_of(std::string_view output_hash) const {
   const std::lock_guard lock(database_->mutex);
   LedgerStatement row(*database_,
@@ -436,6 +480,14 @@ void Ledger::for_each_result(const std::function<void(const LedgerResult&)>& vis
     visit({row.number_at(0), static_cast<std::uint64_t>(row.number_at(1)), row.text_at(2),
            row.text_at(3), row.text_at(4)});
   }
+}
+
+void Ledger::for_each_state(std::int64_t run,
+                            const std::function<void(const LedgerState&)>& visit) const {
+  const std::lock_guard lock(database_->mutex);
+  LedgerStatement row(*database_, std::string(kStateColumns) + "WHERE run = ? ORDER BY target");
+  row.number(run);
+  while (row.step()) visit(state_in(row));
 }
 
 bool is_ledger_file(const fs::path& path) {

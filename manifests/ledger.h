@@ -32,10 +32,24 @@ struct LedgerItem {
   std::string task;  // hash of the request: payload, scheme and options
   std::string key;   // fingerprint
   std::string status;
-  std::string output_hash;  // empty: there is no output
-  std::string record;       // one line of JSON; see record.h
-  std::int64_t run = 0;     // that made the item or last found it done
-  std::uint64_t place = 0;  // in that run, from 0
+  std::string output_hash;    // empty: there is no output
+  std::string record;         // one line of JSON; see record.h
+  std::int64_t run = 0;       // that made the item or last found it done
+  std::uint64_t place = 0;    // in that run, from 0
+  std::string finished = {};  // UTC; when it was put
+};
+
+// How a sweep last found an output. There is one row for each, so that a sweep of an unchanged
+// library does not let the ledger grow.
+struct LedgerState {
+  std::string target;        // as LedgerItem::target
+  std::string state;         // "intact", "altered", ..; see FileState
+  std::string change;        // what was new in it
+  std::string expected;      // LedgerItem::output_hash at that time
+  std::string hash;          // of the file as it was found; empty: it could not be read
+  bool is_accepted = false;  // the owner knows, and wants to hear no more of it
+  std::string line;          // one JSON object: what the sweep prints with --json
+  std::int64_t run = 0;      // the sweep
 };
 
 // The scheme of marks that displace every point, in the ledger: they are read with their mesh.
@@ -95,6 +109,10 @@ class Ledger {
   // Inserts or replaces what the run found at this place.
   void note(const LedgerResult& result);
 
+  // Inserts or replaces the state of an output.
+  void put_state(const LedgerState& state);
+  [[nodiscard]] std::optional<LedgerState> state_of(std::string_view target) const;
+
   // Returns the mark that was issued with this content, if any.
   [[nodiscard]] std::optional<LedgerMark> mark_of(std::string_view output_hash) const;
 
@@ -103,13 +121,14 @@ class Ledger {
   // ledger.
   [[nodiscard]] std::optional<LedgerItem> find_after(std::string_view target) const;
 
-  // Call the function for every mark or run, ascending by number; or every result, by run and
-  // place.
+  // Call the function for every mark or run, ascending by number; every result, by run and place;
+  // or every state that a sweep left, by name.
   void for_each_mark(const std::function<void(const LedgerMark&)>& visit) const;
   void for_each_mark_of(std::string_view message_hex,
                         const std::function<void(const LedgerMark&)>& visit) const;
   void for_each_run(const std::function<void(const LedgerRun&)>& visit) const;
   void for_each_result(const std::function<void(const LedgerResult&)>& visit) const;
+  void for_each_state(std::int64_t run, const std::function<void(const LedgerState&)>& visit) const;
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 

@@ -167,6 +167,38 @@ TEST(Ledger, KeepsWhatARunFoundInFiles) {
 }
 
 // A ledger that the build of schema 1 wrote: one run, two outputs and their marks.
+TEST(Ledger, KeepsTheLastStateOfEachOutput) {
+  const test::TempFolder folder;
+  Ledger ledger(folder / "l");
+  const std::string odd("/out/\xff\n\0'.obj", 12);
+  EXPECT_FALSE(ledger.state_of(odd));
+  for (const char* state : {"intact", "altered"}) {
+    const std::int64_t run = ledger.begin_run({.verb = "sweep"});
+    ledger.put_state({.target = odd,
+                      .state = state,
+                      .change = "c",
+                      .expected = "12",
+                      .hash = "34",
+                      .is_accepted = state == std::string("altered"),
+                      .line = "{}",
+                      .run = run});
+    std::size_t states = 0;
+    ledger.for_each_state(run, [&](const LedgerState&) { ++states; });
+    EXPECT_EQ(states, 1U);
+    const auto known = ledger.state_of(odd);
+    ASSERT_TRUE(known);
+    EXPECT_EQ(known->target, odd);
+    EXPECT_EQ(known->state, state);
+    EXPECT_EQ(known->change, "c");
+    EXPECT_EQ(known->expected, "12");
+    EXPECT_EQ(known->hash, "34");
+    EXPECT_EQ(known->line, "{}");
+    EXPECT_EQ(known->is_accepted, state == std::string("altered"));
+  }
+  ledger.for_each_state(1,
+                        [](const LedgerState&) { FAIL() << "that of the first run is replaced"; });
+}
+
 TEST(Ledger, OpensOneOfAnEarlierSchemaWithAllThatItKnows) {
   const test::TempFolder folder;
   const auto path = folder.write(
@@ -188,7 +220,7 @@ TEST(Ledger, OpensOneOfAnEarlierSchemaWithAllThatItKnows) {
     ledger.for_each_result([&](const LedgerResult&) { ++results; });
     EXPECT_EQ(results, 1U);
   }
-  EXPECT_EQ(test::read_all(path)[63], 3);
+  EXPECT_EQ(test::read_all(path)[63], 4);
 }
 
 TEST(Ledger, TakesWritersOfManyThreadsAndProcesses) {
