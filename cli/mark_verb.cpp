@@ -28,6 +28,7 @@ struct MarkArguments {
   bool json = false;
   bool dry_run = false;
   bool companions = false;
+  bool no_shapes = false;
   bool keep_times = false;
   ResumeOptions resume;
   KeyArgument key;
@@ -244,6 +245,7 @@ int mark_share(const MarkArguments& arguments, const Jobs& jobs, const Key& key,
   RunContext context = arguments.run.context(order);
   context.resume = &resume;
   context.copies_companions = arguments.companions;
+  context.keeps_shapes = !arguments.no_shapes;
   context.keeps_times = arguments.keep_times;
   const auto source = jobs.open();
   const std::atomic<bool>& stop = order.board->stop();
@@ -301,6 +303,9 @@ void add_mark_verb(CLI::App& app, Action& action) {
                  "Copy the material libraries and textures that a mesh names beside its output");
   verb->add_flag("--keep-times", arguments->keep_times,
                  "Give each output the modification time of its mesh");
+  verb->add_flag("--no-shapes", arguments->no_shapes,
+                 "Keep no coarse shape of a mesh in the ledger when copies are made of it; cropped "
+                 "copies are then traced with the mesh alone");
   verb->add_flag("--dry-run", arguments->dry_run, "Print what would be done, and do nothing");
   arguments->key.add_to(*verb);
   arguments->run.add_to(*verb);

@@ -26,7 +26,7 @@ constexpr int kApplicationId = 0x54474c59;
 constexpr int kBusyTimeout = 20000;
 
 // Step i leads from schema i to schema i + 1. Steps are never changed, only added.
-constexpr std::array<const char*, 4> kSteps = {
+constexpr std::array<const char*, 5> kSteps = {
     R"sql(
 CREATE TABLE runs (
   id INTEGER PRIMARY KEY AUTOINCREMENT,
@@ -93,6 +93,13 @@ CREATE TABLE states (
   run INTEGER NOT NULL REFERENCES runs (id),
   checked TEXT NOT NULL DEFAULT (strftime('%Y-%m-%dT%H:%M:%SZ', 'now'))
 ) WITHOUT ROWID;
+)sql",
+    R"sql(
+CREATE TABLE shapes (
+  input_hash TEXT PRIMARY KEY,
+  bytes BLOB NOT NULL,
+  kept TEXT NOT NULL DEFAULT (strftime('%Y-%m-%dT%H:%M:%SZ', 'now'))
+);
 )sql"};
 constexpr int kSchema = static_cast<int>(kSteps.size());
 
@@ -400,6 +407,27 @@ void Ledger::note(const LedgerResult& result) {
       .text(result.status)
       .text(result.line)
       .step();
+}
+
+void Ledger::put_shape(const LedgerShape& shape) {
+  const std::lock_guard lock(database_->mutex);
+  LedgerStatement(*database_, "INSERT OR IGNORE INTO shapes (input_hash, bytes) VALUES (?, ?)")
+      .text(shape.input_hash)
+      .bytes(shape.bytes)
+      .step();
+}
+
+bool Ledger::has_shape(std::string_view input_hash) const {
+  const std::lock_guard lock(database_->mutex);
+  LedgerStatement row(*database_, "SELECT 1 FROM shapes WHERE input_hash = ?");
+  return row.text(input_hash).step();
+}
+
+std::optional<LedgerShape> Ledger::shape_of(std::string_view input_hash) const {
+  const std::lock_guard lock(database_->mutex);
+  LedgerStatement row(*database_, "SELECT input_hash, bytes FROM shapes WHERE input_hash = ?");
+  if (!row.text(input_hash).step()) return std::nullopt;
+  return LedgerShape{row.text_at(0), row.text_at(1)};
 }
 
 void Ledger::put_state(const LedgerState& state) {

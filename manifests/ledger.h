@@ -70,6 +70,12 @@ struct LedgerMark {
   std::string issued;  // UTC
 };
 
+// The shape of a mesh of which copies were issued; see KeptShape.
+struct LedgerShape {
+  std::string input_hash;  // of the mesh
+  std::string bytes;
+};
+
 // What a run that writes no mesh (extract, verify, measure, render) found in one file or pair.
 struct LedgerResult {
   std::int64_t run = 0;
@@ -108,6 +114,12 @@ class Ledger {
 
   // Inserts or replaces what the run found at this place.
   void note(const LedgerResult& result);
+
+  // Keep the shape of a mesh, unless there is one.
+  void put_shape(const LedgerShape& shape);
+  [[nodiscard]] bool has_shape(std::string_view input_hash) const;
+  // Returns nothing if there is none.
+  [[nodiscard]] std::optional<LedgerShape> shape_of(std::string_view input_hash) const;
 
   // Inserts or replaces the state of an output.
   void put_state(const LedgerState& state);

@@ -154,6 +154,13 @@ void Resume::enter(const Record& record) const {
   enter_record(ledger_, run_, record);
 }
 
+void Resume::keep_shape(const FileMarking& marking) const {
+  const std::string& hash = marking.result().input_hash;
+  if (ledger_.has_shape(hash)) return;
+  const std::vector<char> bytes = marking.kept_shape();
+  if (!bytes.empty()) ledger_.put_shape({hash, {bytes.begin(), bytes.end()}});
+}
+
 void Resume::keep(const Job& job) const {
   ledger_.keep(canonical_name(job.out), run_, job.index);
 }

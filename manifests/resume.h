@@ -54,6 +54,9 @@ class Resume {
   // there that the ledger does not know. Throws Error Unwritable.
   void enter(const Record& record) const;
 
+  // Enters the shape of a mesh that copies were made of, unless there is one. Throws as enter().
+  void keep_shape(const FileMarking& marking) const;
+
   // Says that this run found the job done.
   void keep(const Job& job) const;
 

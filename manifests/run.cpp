@@ -113,6 +113,7 @@ class MarkWork {
       context_.resume->enter(item.record);
     }
     if (!item.record.file.is_marked()) return;
+    if (context_.resume != nullptr && context_.keeps_shapes) context_.resume->keep_shape(marking);
     marking.publish(context_.keeps_times);
     if (marking.result().is_marked() || context_.resume == nullptr) return;
     describe(item, marking);

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -42,11 +43,29 @@ void add(std::vector<Encoding>& encodings, std::vector<Encoding> others) {
   }
 }
 
+// The shapes that a ledger keeps of some meshes.
+class ShapesInLedger final : public KeptShapes {
+ public:
+  ShapesInLedger(const Ledger& ledger, std::vector<std::string> hashes)
+      : ledger_(ledger), hashes_(std::move(hashes)) {}
+  [[nodiscard]] std::size_t size() const override { return hashes_.size(); }
+  [[nodiscard]] std::vector<char> bytes(std::size_t index) const override {
+    const std::optional<LedgerShape> shape = ledger_.shape_of(hashes_.at(index));
+    if (!shape) return {};
+    return {shape->bytes.begin(), shape->bytes.end()};
+  }
+
+ private:
+  const Ledger& ledger_;
+  std::vector<std::string> hashes_;  // of the meshes
+};
+
 // Names that are looked for together.
 struct Group {
   std::vector<std::string> names;
   std::vector<Encoding> encodings;
   std::optional<Strength> strength;  // of displaced points
+  std::set<std::string> meshes;      // hashes of those with a flux layer
 };
 
 // The groups of one key, by the colluders that their fingerprints resist and by the original
@@ -65,6 +84,7 @@ class MarksInLedger {
       Group& group = groups_[mark.key][{colluders, needs_original ? mark.mesh : ""}];
       group.names.push_back(bytes_of(mark.message_hex));
       if (needs_original) group.strength = options.strength;
+      if (!needs_original && options.flux != LayerUse::No) group.meshes.insert(mark.input_hash);
       if (is_new_ && !needs_original) add(group.encodings, fingerprint_encodings(options));
     }
     if (options.carry != Carry::Fingerprint && is_new_) {
@@ -126,6 +146,11 @@ KnownCopies known_copies(const Ledger* ledger, const Recipients* list,
       group.names.erase(std::unique(group.names.begin(), group.names.end()), group.names.end());
       for (const std::string& name : group.names) one.names.emplace_back(name.begin(), name.end());
       one.originals = named;
+      std::vector<std::string> kept;
+      for (const std::string& mesh : group.meshes) {
+        if (ledger->has_shape(mesh)) kept.push_back(mesh);
+      }
+      if (!kept.empty()) one.shapes = std::make_shared<ShapesInLedger>(*ledger, std::move(kept));
       if (group.strength) {
         one.originals = {std::make_shared<OriginalMesh>(original, *group.strength)};
       }

@@ -22,7 +22,8 @@ struct KnownCopies {
 // which were marked with any of these options. Either may be missing. `originals` are meshes of
 // which the suspects may be copies, besides those whose marks cannot be read without, which the
 // ledger names. Throws Error Malformed for options in the ledger that are none, and as
-// MeshFile::open() does for an original that is named. O(marks).
+// MeshFile::open() does for an original that is named. The ledger must outlive the result.
+// O(marks).
 [[nodiscard]] KnownCopies known_copies(const Ledger* ledger, const Recipients* list,
                                        std::span<const MarkOptions> options,
                                        std::span<const Key> keys,

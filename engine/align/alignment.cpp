@@ -112,18 +112,27 @@ std::optional<Similarity> trimmed_similarity(std::vector<PointPair> pairs) {
   return fitted;
 }
 
+// Returns the numbers of points that no other point has, and 0 for others.
+std::vector<std::uint64_t> unique_surroundings(const Mesh& mesh, Handedness handedness) {
+  std::vector<std::uint64_t> colours = surroundings(mesh, handedness);
+  const auto points = unique_points(colours);
+  for (std::uint64_t& colour : colours) {
+    if (points.at(colour) == kSeveral) colour = 0;
+  }
+  return colours;
+}
+
 std::optional<Similarity> by_surroundings(const Mesh& suspect, const Mesh& original,
+                                          std::span<const std::uint64_t> theirs,
                                           Handedness handedness) {
-  const std::vector<std::uint64_t> ours = surroundings(suspect, handedness);
-  const std::vector<std::uint64_t> theirs = surroundings(original, Handedness::Same);
+  const std::vector<std::uint64_t> ours = unique_surroundings(suspect, handedness);
   const auto known = unique_points(theirs);
-  const auto own = unique_points(ours);
   std::vector<PointPair> pairs;
   for (std::uint32_t point = 0; point < ours.size(); ++point) {
+    if (ours[point] == 0) continue;  // nor does a match with an unknown one count
     const auto match = known.find(ours[point]);
-    const bool is_pair =
-        own.at(ours[point]) != kSeveral && match != known.end() && match->second != kSeveral;
-    if (is_pair) pairs.push_back({suspect.positions[point], original.positions[match->second]});
+    if (match == known.end() || match->second == kSeveral) continue;
+    pairs.push_back({suspect.positions[point], original.positions[match->second]});
   }
   return trimmed_similarity(std::move(pairs));
 }
@@ -308,7 +317,16 @@ class Judgement {
 
 }  // namespace
 
-std::vector<Alignment> align(const Mesh& suspect, const Mesh& original) {
+std::vector<std::uint64_t> landmarks(const Mesh& mesh) {
+  return unique_surroundings(mesh, Handedness::Same);
+}
+
+namespace {
+
+// `theirs` returns the landmarks of the original, which are not always needed.
+template <typename Landmarks>
+std::vector<Alignment> aligned_by(const Mesh& suspect, const Mesh& original,
+                                  const Landmarks& theirs) {
   if (suspect.positions.empty() || original.triangles.empty()) return {};
   const Judgement judgement(suspect, original);
   if (!(judgement.diagonal() > 0)) return {};
@@ -319,7 +337,7 @@ std::vector<Alignment> align(const Mesh& suspect, const Mesh& original) {
   };
   for (const Handedness handedness : {Handedness::Same, Handedness::Mirrored}) {
     if (is_sure()) break;
-    const auto way = by_surroundings(suspect, original, handedness);
+    const auto way = by_surroundings(suspect, original, theirs(), handedness);
     if (way) ways.push_back(judgement.judged(*way));
   }
   if (!is_sure()) {
@@ -346,6 +364,17 @@ std::vector<Alignment> align(const Mesh& suspect, const Mesh& original) {
     if (is_as_good && is_new && best.size() < kMostAlignments) best.push_back(way);
   }
   return best;
+}
+
+}  // namespace
+
+std::vector<Alignment> align(const Mesh& suspect, const Mesh& original) {
+  return aligned_by(suspect, original, [&] { return landmarks(original); });
+}
+
+std::vector<Alignment> align(const Mesh& suspect, const Mesh& original,
+                             std::span<const std::uint64_t> marks) {
+  return aligned_by(suspect, original, [&] { return marks; });
 }
 
 std::vector<std::optional<Vec3>> places_on(const Mesh& original, const Mesh& suspect,

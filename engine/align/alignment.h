@@ -1,6 +1,7 @@
 // Registration: how a suspect, or a piece of it, was moved away from the original.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -16,6 +17,10 @@ struct Alignment {
   double rms = 0;      // distance of these, model units of the original
 };
 
+// Returns a number for each point by which it is found in other meshes: it depends on how its
+// surroundings are connected, and is 0 if another point has the same. O(triangles).
+[[nodiscard]] std::vector<std::uint64_t> landmarks(const Mesh& mesh);
+
 // Returns the similarities, mirror images among them, that bring the suspect to the original, at
 // most four, the best first: several of a shape that is symmetric; none if less than half of its
 // points come within a hundredth of the original's diagonal. Tries the suspect as it is; points
@@ -30,6 +35,11 @@ struct Alignment {
 // Computing 10 (1992).
 // Chetverikov, Svirko, Stepanov, Krsek. The trimmed iterative closest point algorithm. ICPR (2002).
 [[nodiscard]] std::vector<Alignment> align(const Mesh& suspect, const Mesh& original);
+
+// Likewise, with an original that is simplified: `marks` are the numbers that its points had before
+// as landmarks(), one for each, 0 where none is known.
+[[nodiscard]] std::vector<Alignment> align(const Mesh& suspect, const Mesh& original,
+                                           std::span<const std::uint64_t> marks);
 
 // Returns the similarities, mirror images among them, that bring some of the points closest to the
 // targets, four or fewer, at most `most` of them, the closest first. Tries every choice of points

@@ -126,6 +126,14 @@ struct FluxCanvas::Basis {
 
 FluxCanvas::~FluxCanvas() = default;
 
+std::optional<FluxSolid> FluxSolid::of(const Surface& surface) {
+  const ClosedMesh closed(surface);
+  const std::vector<Vec3> positions = closed.with_centres(surface.mesh.positions);
+  const auto frame = closed.frame(positions);
+  if (!frame) return std::nullopt;
+  return FluxSolid{*frame, flux_values(positions, closed.triangles(), *frame)};
+}
+
 FluxCanvas::FluxCanvas(const Surface& surface) : surface_(surface), closed_(surface) {
   const Mesh& mesh = surface.mesh;
   diagonal_ = surface_diagonal(mesh);
@@ -143,6 +151,23 @@ FluxCanvas::FluxCanvas(const Surface& surface) : surface_(surface), closed_(surf
     }
   }
   before_ = measured(flux_values(positions, closed_.triangles(), frame_));
+  prepare(positions);
+  if (obstacle_ != FluxObstacle::None) return;
+  usual_noise_ = noise_of(kUsualNoise, kUsualBits);
+  little_noise_ = noise_of(kLittleNoise, kLittleBits);
+}
+
+FluxCanvas::FluxCanvas(const Surface& surface, const FluxSolid& solid)
+    : surface_(surface),
+      closed_(surface),
+      diagonal_(surface_diagonal(surface.mesh)),
+      frame_(solid.frame),
+      before_(measured(solid.values)) {
+  prepare(closed_.with_centres(surface.mesh.positions));
+}
+
+void FluxCanvas::prepare(const std::vector<Vec3>& positions) {
+  const Mesh& mesh = surface_.mesh;
   for (std::uint32_t i = 0; i < kFunctionals; ++i) {
     if (before_[i].used >= 0.5) used_.push_back(i);
   }
@@ -157,8 +182,6 @@ FluxCanvas::FluxCanvas(const Surface& surface) : surface_(surface), closed_(surf
   derivatives_ = flux_derivatives(positions, closed_.triangles(), faces, directions_, frame_);
   frame_rows_ = frame_rows(positions, closed_.triangles(), faces, directions_, frame_);
   basis_ = make_basis(std::vector<double>(mesh.positions.size(), 1));
-  usual_noise_ = noise_of(kUsualNoise, kUsualBits);
-  little_noise_ = noise_of(kLittleNoise, kLittleBits);
 }
 
 std::shared_ptr<const FluxCanvas::Basis> FluxCanvas::make_basis(

@@ -38,12 +38,26 @@ struct FluxExpectation {
   double after_little_noise = 0;  // 0.1 %, 11 bits
 };
 
+// What a reader must know of a surface to read a mark from a part of it: the frame, which a part
+// does not have, and the functionals without the mark.
+struct FluxSolid {
+  SolidFrame frame;
+  FluxValues values;
+
+  // Returns that of a surface; nothing if it has no frame. O(triangles), parallel.
+  [[nodiscard]] static std::optional<FluxSolid> of(const Surface& surface);
+};
+
 // A mesh prepared for marks of any payload and key: functionals, their derivatives, and the
 // displacements that change one functional alone.
 class FluxCanvas {
  public:
   // The surface must outlive the canvas. O(triangles) plus a factorisation, see ThinPlate.
   explicit FluxCanvas(const Surface& surface);
+  // A canvas to read from and not to write to: `surface` is a coarse one, whose points lie on the
+  // surface that the solid was taken of. With some thousand points it tells as much of a part as
+  // the whole surface does, since a mark is smooth.
+  FluxCanvas(const Surface& surface, const FluxSolid& solid);
   ~FluxCanvas();
   FluxCanvas(const FluxCanvas&) = delete;
   FluxCanvas& operator=(const FluxCanvas&) = delete;
@@ -82,6 +96,8 @@ class FluxCanvas {
  private:
   struct Basis;
 
+  // Prepares the displacements of single functionals, unless there is an obstacle.
+  void prepare(const std::vector<Vec3>& positions);
   // Returns the displacements for points that follow them so far, 0 to 1.
   [[nodiscard]] std::shared_ptr<const Basis> make_basis(std::span<const double> weights) const;
   // Returns the changes under noise of some amplitude and under quantisation to so many bits.

@@ -15,6 +15,7 @@
 #include "engine/io/gltf.h"
 #include "engine/marking/copies.h"
 #include "engine/marking/extract.h"
+#include "engine/marking/kept_shape.h"
 #include "engine/marking/mark.h"
 #include "engine/marking/readable.h"
 #include "engine/marking/refusal.h"
@@ -409,6 +410,20 @@ void FileMarking::publish(bool keeps_time) noexcept {
   });
   result_.times.write += seconds;
   work_.reset();
+}
+
+std::vector<char> FileMarking::kept_shape() const noexcept {
+  const MarkOptions& options = result_.request.options;
+  const bool is_copy =
+      result_.status == FileStatus::Traceable || options.carry == Carry::Fingerprint;
+  const bool has_flux = options.flux != LayerUse::No && !result_.needs_original;
+  if (work_ == nullptr || !result_.is_marked() || !is_copy || !has_flux) return {};
+  try {
+    const std::optional<KeptShape> shape = KeptShape::of(work_->mesh->surface());
+    return shape ? shape->bytes() : std::vector<char>();
+  } catch (const std::exception&) {
+    return {};
+  }
 }
 
 void FileMarking::note_input_hash() noexcept {

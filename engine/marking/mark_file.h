@@ -132,6 +132,10 @@ class FileMarking {
   // modification time, and releases everything but the result.
   void publish(bool keeps_time = false) noexcept;
 
+  // Returns the bytes of the KeptShape of the mesh, for copies with a flux layer; nothing for
+  // others, and after publish(). Does not throw: without memory there is nothing.
+  [[nodiscard]] std::vector<char> kept_shape() const noexcept;
+
   // Enters the hash of the mesh's file into the result, if the file can be read; load() does so
   // too.
   void note_input_hash() noexcept;

@@ -4,12 +4,16 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <optional>
+#include <unordered_set>
+#include <utility>
 
 #include "engine/align/alignment.h"
 #include "engine/base/error.h"
 #include "engine/base/stop.h"
 #include "engine/geometry/box.h"
 #include "engine/marking/copies.h"
+#include "engine/marking/kept_shape.h"
 #include "engine/marking/readable.h"
 #include "engine/mesh/surface_diagonal.h"
 #include "engine/trace/displaced_points.h"
@@ -38,20 +42,18 @@ constexpr double kReachOfSurface = 0.005;
 constexpr double kReachOfPoints = 8;
 constexpr double kLeastReachOfPoints = 0.002;
 
-// Reads the flux layer of the original where it has the suspect's surface.
-void add_flux_of_part(const Mesh& suspect, const Mesh& original,
-                      std::span<const Alignment> alignments, const Key& key,
+// Reads the flux layer of the original, or of its coarse surface, where it has the suspect's.
+void add_flux_of_part(const Mesh& suspect, const Mesh& original, const FluxCanvas& canvas,
+                      std::span<const Alignment> alignments, const Key& key, const char* what,
                       std::vector<ScoreTable>& tables) {
   const double reach = kReachOfSurface * box_diagonal(original.positions);
-  const Halfedges halfedges = build_halfedges(original);
-  const FluxCanvas canvas({original, halfedges});
   if (canvas.obstacle() != FluxObstacle::None) return;
   for (const Alignment& alignment : alignments) {
     const auto places = places_on(original, suspect, alignment.motion, reach);
     for (const FluxSoftReading& reading : read_flux_of_estimate(canvas.estimated(places), key)) {
       ScoreTable& table = tables.emplace_back(score_flux(reading, 1));
       table.prior -= std::log2(static_cast<double>(alignments.size()));
-      table.what = "flux, with the original";
+      table.what = what;
     }
   }
 }
@@ -111,13 +113,86 @@ std::vector<ScoreTable> tables_with(const Mesh& suspect, const OriginalMesh& ori
   }
   const std::vector<Alignment> alignments = align(suspect, *mesh);
   if (!alignments.empty() && has_flux(group.encodings)) {
-    add_flux_of_part(suspect, *mesh, alignments, key, tables);
+    const Halfedges halfedges = build_halfedges(*mesh);
+    add_flux_of_part(suspect, *mesh, FluxCanvas({*mesh, halfedges}), alignments, key,
+                     "flux, with the original", tables);
   }
   // of large meshes no points are displaced
   if (points_alone || own <= kMostDisplaced) {
     add_points(suspect, *mesh, alignments,
                farthest_of_points(original.strength(), surface_diagonal(*mesh)), tables);
   }
+  return tables;
+}
+
+// Landmarks that a suspect must share with a shape, if it does not lie in its box.
+constexpr std::size_t kLeastLandmarks = 8;
+
+// How far a suspect may reach out of the box of a shape, as a share of its diagonal.
+constexpr double kOutOfBox = 0.02;
+
+// Shapes that are tried at most, those that share the most landmarks first.
+constexpr std::size_t kMostShapes = 16;
+
+// Chooses among shapes those that the suspect may be a piece of.
+class ShapeSearch {
+ public:
+  explicit ShapeSearch(const Mesh& suspect) : box_(bounding_box(suspect.positions)) {
+    Mesh turned = suspect;
+    for (Triangle& t : turned.triangles) std::swap(t[1], t[2]);
+    for (const Mesh* mesh : {&suspect, &std::as_const(turned)}) {  // it may be a mirror image
+      for (const std::uint64_t number : landmarks(*mesh)) {
+        if (number != 0) landmarks_.insert(number);
+      }
+    }
+  }
+
+  [[nodiscard]] std::vector<KeptShape> chosen_of(const KeptShapes& shapes) const {
+    std::vector<std::pair<std::size_t, KeptShape>> chosen;  // by what speaks for them
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+      stop_point();
+      std::optional<KeptShape> shape = KeptShape::from_bytes(shapes.bytes(i));
+      if (!shape) continue;
+      const std::size_t promise = promise_of(*shape);
+      if (promise == 0) continue;
+      chosen.emplace_back(promise, std::move(*shape));
+      std::stable_sort(chosen.begin(), chosen.end(),
+                       [](const auto& a, const auto& b) { return a.first > b.first; });
+      if (chosen.size() > kMostShapes) chosen.pop_back();
+    }
+    std::vector<KeptShape> result;
+    for (auto& [promise, shape] : chosen) result.push_back(std::move(shape));
+    return result;
+  }
+
+ private:
+  [[nodiscard]] std::size_t promise_of(const KeptShape& shape) const {
+    std::size_t shared = 0;
+    for (const std::uint64_t number : shape.landmarks) shared += landmarks_.count(number);
+    if (shared >= kLeastLandmarks) return shared;
+    const Box box = bounding_box(shape.coarse.positions);
+    const double slack = kOutOfBox * box.size().norm();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (box_.low[axis] < box.low[axis] - slack || box_.high[axis] > box.high[axis] + slack) {
+        return 0;
+      }
+    }
+    return 1;
+  }
+
+  Box box_;
+  std::unordered_set<std::uint64_t> landmarks_;
+};
+
+// Returns what is read with a shape; nothing if the suspect has nothing to do with it.
+std::vector<ScoreTable> tables_with_shape(const Mesh& suspect, const KeptShape& shape,
+                                          const Key& key) {
+  std::vector<ScoreTable> tables;
+  const std::vector<Alignment> alignments = align(suspect, shape.coarse, shape.landmarks);
+  if (alignments.empty()) return tables;
+  const Halfedges halfedges = build_halfedges(shape.coarse);
+  add_flux_of_part(suspect, shape.coarse, FluxCanvas({shape.coarse, halfedges}, shape.solid),
+                   alignments, key, "flux, with the shape in the ledger", tables);
   return tables;
 }
 
@@ -140,7 +215,8 @@ std::vector<Traced> trace_group(const Surface& surface, const Key& key,
   const std::vector<ScoreTable> blind =
       read_fingerprints(surface, key, prepared.code, group.encodings, effort);
   std::map<std::size_t, NameEvidence> best;  // by name: the most that speaks for it
-  const double price = std::log2(1 + static_cast<double>(group.originals.size()));
+  const std::size_t shapes = group.shapes ? group.shapes->size() : 0;
+  const double price = std::log2(1 + static_cast<double>(group.originals.size() + shapes));
   const auto add = [&](std::span<const ScoreTable> tables) {
     for (Scored& scored : best_of(tables, prepared.code, prepared.seeds, most)) {
       scored.evidence.bits -= price;
@@ -155,6 +231,14 @@ std::vector<Traced> trace_group(const Surface& surface, const Key& key,
     stop_point();
     std::vector<ScoreTable> with = tables_with(surface.mesh, *original, key, group);
     if (!with.empty()) add(joined(blind, std::move(with)));
+  }
+  // it takes its time, and what names somebody by then needs no more
+  if (shapes > 0 && effort == FluxEffort::All && has_flux(group.encodings)) {
+    for (const KeptShape& shape : ShapeSearch(surface.mesh).chosen_of(*group.shapes)) {
+      stop_point();
+      std::vector<ScoreTable> with = tables_with_shape(surface.mesh, shape, key);
+      if (!with.empty()) add(joined(blind, std::move(with)));
+    }
   }
   std::vector<Traced> traced;
   for (auto& [name, evidence] : best) {

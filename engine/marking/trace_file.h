@@ -35,12 +35,23 @@ class OriginalMesh {
   Once<Mesh> mesh_;
 };
 
+// Shapes of originals that are not at hand; see KeptShape. There may be thousands, of which one at
+// a time is in memory.
+class KeptShapes {
+ public:
+  virtual ~KeptShapes() = default;
+  [[nodiscard]] virtual std::size_t size() const = 0;
+  // Returns the bytes of a shape. May be called from several threads at a time.
+  [[nodiscard]] virtual std::vector<char> bytes(std::size_t index) const = 0;
+};
+
 // Names whose fingerprints have the same code, and how these are encoded.
 struct SuspectGroup {
   int colluders = 1;
   std::vector<Encoding> encodings;  // in formats of fingerprints; none: read with originals alone
   std::vector<Message> names;
   std::vector<std::shared_ptr<const OriginalMesh>> originals;
+  std::shared_ptr<const KeptShapes> shapes = {};  // null: none
 };
 
 // Names under one key, made ready once for any number of files.
@@ -92,10 +103,12 @@ struct TraceOptions {
 
 // Returns the names for which most speaks. With originals, the suspect is brought to the place of
 // each, see align(): what was cut off is completed for the flux layer, and displacements of points
-// are read. An original that cannot be read, or to which the suspect cannot be brought, tells
-// nothing. Each bound pays for all names, keys, groups, originals and
-// files, and for all that a reader tries. Throws Error as MeshFile::open() does. O(triangles) for
-// each encoding and key, and O(names); see read_fingerprints() and best_of().
+// are read. Where that names nobody, the flux layer is also completed by those of the shapes that
+// share landmarks with the suspect, or in whose box it lies. An original that cannot be read, or to
+// which the suspect cannot be brought, tells nothing. Each bound pays for all names, keys, groups,
+// originals, shapes and files, and for all that a reader tries. Throws Error as MeshFile::open()
+// does. O(triangles) for each encoding and key, and O(names); see read_fingerprints() and
+// best_of().
 [[nodiscard]] FileTrace trace_file(const std::filesystem::path& path,
                                    std::span<const Suspects> suspects, const TraceOptions& options);
 

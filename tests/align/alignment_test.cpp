@@ -7,6 +7,7 @@
 #include "engine/attack/attack.h"
 #include "engine/base/random.h"
 #include "engine/geometry/box.h"
+#include "engine/mesh/fewer_triangles.h"
 #include "engine/samples/sample_shapes.h"
 #include "tests/flux/flux_shapes.h"
 #include "tests/support/arenas.h"
@@ -109,6 +110,21 @@ TEST(Alignment, UndoesMotionsOfPieces) {
       ASSERT_FALSE(found.empty()) << attack << seed;
       EXPECT_LT(error_of(motion, found[0].motion, original), 1e-3) << attack << seed;
     }
+  }
+}
+
+TEST(Alignment, FindsPiecesByLandmarksOfAMeshThatIsSimplified) {
+  const Mesh original = make_sample_shape(SampleShape::Closed, 6000, 3);
+  std::vector<std::uint64_t> numbers = landmarks(original);
+  Mesh coarse{original.positions, clustered(original, 2000)};
+  const Mesh piece = Attack::parsed("crop:50").applied(original, 7);
+  const Similarity motion = some_motion(1, false);
+  const std::vector<Alignment> found = align(moved_by(motion, piece), coarse, numbers);
+  ASSERT_FALSE(found.empty());
+  EXPECT_LT(error_of(motion, found[0].motion, original), 5e-3);
+  std::fill(numbers.begin(), numbers.end(), 0);
+  for (const Alignment& way : align(moved_by(motion, piece), coarse, numbers)) {
+    EXPECT_GT(error_of(motion, way.motion, original), 5e-3);
   }
 }
 

@@ -220,7 +220,7 @@ TEST(Ledger, OpensOneOfAnEarlierSchemaWithAllThatItKnows) {
     ledger.for_each_result([&](const LedgerResult&) { ++results; });
     EXPECT_EQ(results, 1U);
   }
-  EXPECT_EQ(test::read_all(path)[63], 4);
+  EXPECT_EQ(test::read_all(path)[63], 5);
 }
 
 TEST(Ledger, TakesWritersOfManyThreadsAndProcesses) {

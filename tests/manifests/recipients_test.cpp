@@ -4,6 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/io/export_mesh.h"
+#include "engine/marking/kept_shape.h"
 #include "manifests/manifest.h"
 #include "manifests/run.h"
 #include "manifests/suspects_of.h"
@@ -142,6 +143,9 @@ TEST_F(RunsForRecipients, AreEnteredInTheLedgerThatKnowsThemAgain) {
   ASSERT_EQ(known.suspects.size(), 2U);
   EXPECT_EQ(known.suspects[0].count(), 3U);
   EXPECT_EQ(known.suspects[1].count(), 0U);
+  ASSERT_TRUE(known.suspects[0].groups()[0].group.shapes);  // one mesh, three copies
+  EXPECT_EQ(known.suspects[0].groups()[0].group.shapes->size(), 1U);
+  EXPECT_TRUE(KeptShape::from_bytes(known.suspects[0].groups()[0].group.shapes->bytes(0)));
   const FileTrace trace = trace_file(folder_ / "out/Ben/a.obj", known.suspects, {});
   ASSERT_FALSE(trace.names.empty());
   EXPECT_EQ(trace.names[0].name, (Message{'B', 'e', 'n'}));

@@ -257,7 +257,7 @@ class Names {
     const std::int64_t run = ledger_.begin_run({.verb = "mark"});
     for (std::size_t i = 0; i < kCount; ++i) {
       LedgerItem item;
-      item.target = folder_ / (std::to_string(i % 10) + "/" + std::to_string(i) + ".obj");
+      item.target = folder_ / std::to_string(i % 10) / std::to_string(i).append(".obj");
       item.status = i == 0 ? "too small" : "marked";
       item.output_hash = "abcd";
       item.run = run;

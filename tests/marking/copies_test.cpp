@@ -10,6 +10,7 @@
 #include "engine/attack/collusion.h"
 #include "engine/attack/stored_mesh.h"
 #include "engine/io/export_mesh.h"
+#include "engine/marking/kept_shape.h"
 #include "engine/marking/mark.h"
 #include "engine/marking/mark_file.h"
 #include "engine/marking/trace_file.h"
@@ -224,6 +225,84 @@ TEST_F(CopiesOfAFile, AreFoundInPiecesWithTheOriginal) {
   EXPECT_EQ(found.names[0].name, names_[9]);
   EXPECT_GT(found.names[0].evidence.bits, 25);
   EXPECT_GT(found.names[0].evidence.bits, found.names[1].evidence.bits + 15);
+}
+
+class SomeShapes final : public KeptShapes {
+ public:
+  explicit SomeShapes(std::vector<std::vector<char>> shapes) : shapes_(std::move(shapes)) {}
+  [[nodiscard]] std::size_t size() const override { return shapes_.size(); }
+  [[nodiscard]] std::vector<char> bytes(std::size_t index) const override {
+    return shapes_.at(index);
+  }
+
+ private:
+  std::vector<std::vector<char>> shapes_;
+};
+
+// The original is not at hand, and what was kept of it stands among that of other meshes.
+TEST_F(CopiesOfAFile, AreFoundInPiecesWithAShapeThatWasKept) {
+  // with surroundings that tell points apart, and more triangles than a shape keeps
+  Mesh mesh = Attack::parsed("simplify:50").applied(test::knobbly(130), 1);
+  for (Vec3& p : mesh.positions) p[1] += 0.1 * std::sin(2 * p[1] + p[0]) + 0.05 * p[2] * p[1];
+  const auto in = save(mesh, "in.obj");
+  const MarkRequest request = for_name("buyer 9", {{"scheme", std::string("flux")}});
+  FileMarking marking(in, folder_ / "out.obj", request);
+  marking.load();
+  marking.mark(Key::trial());
+  marking.write();
+  marking.read_back(Key::trial());
+  marking.measure();
+  const std::vector<char> kept = marking.kept_shape();
+  marking.publish();
+  ASSERT_EQ(marking.result().status, FileStatus::Traceable) << marking.result().error;
+  ASSERT_FALSE(kept.empty());
+  EXPECT_TRUE(marking.kept_shape().empty());
+  const Mesh written = MeshFile::open(folder_ / "out.obj").mesh();
+  const Halfedges halfedges = build_halfedges(knobs());
+  const std::vector<char> other = KeptShape::of({knobs(), halfedges})->bytes();
+  SuspectGroup group;
+  group.encodings = fingerprint_encodings(request.options);
+  group.names = names_;
+  const auto bits_of = [&](const char* attack) {
+    const auto piece = save(Attack::parsed(attack).applied(written, 5), "piece.obj");
+    const std::vector<Suspects> suspects = {Suspects(Key::trial(), {group})};
+    const FileTrace found = trace_file(piece, suspects, {});
+    EXPECT_FALSE(found.names.empty());
+    return found.names[0].name == names_[9] ? found.names[0].evidence.bits : 0;
+  };
+  EXPECT_LT(bits_of("crop:30"), 20);
+  group.shapes = std::make_shared<SomeShapes>(std::vector<std::vector<char>>{other, {}, kept});
+  EXPECT_GT(bits_of("crop:30"), 30);
+  EXPECT_GT(bits_of("crop:30+similarity"), 30);
+  EXPECT_GT(bits_of("crop:30+similarity+mirror"), 30);
+  group.shapes = std::make_shared<SomeShapes>(std::vector<std::vector<char>>{other});
+  EXPECT_LT(bits_of("crop:30"), 20);
+}
+
+TEST(KeptShape, IsReadBackAndNothingElseIs) {
+  const Halfedges halfedges = build_halfedges(knobs());
+  const std::optional<KeptShape> shape = KeptShape::of({knobs(), halfedges});
+  ASSERT_TRUE(shape);
+  EXPECT_EQ(shape->coarse.triangles.size(), knobs().triangles.size());  // there are not many
+  const std::vector<char> bytes = shape->bytes();
+  const std::optional<KeptShape> again = KeptShape::from_bytes(bytes);
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->bytes(), bytes);
+  EXPECT_EQ(again->landmarks, shape->landmarks);
+  EXPECT_EQ(again->solid.values.flux, shape->solid.values.flux);
+  EXPECT_EQ(again->solid.frame.axes, shape->solid.frame.axes);
+  for (std::size_t size = 0; size < bytes.size(); size += 101) {
+    EXPECT_FALSE(KeptShape::from_bytes({bytes.data(), size})) << size;
+  }
+  std::vector<char> damaged = bytes;
+  for (std::size_t i = 0; i < damaged.size(); i += 37) {  // any end but a crash
+    damaged[i] = static_cast<char>(damaged[i] ^ 0x55);
+    (void)KeptShape::from_bytes(damaged);
+    damaged[i] = bytes[i];
+  }
+  const Mesh flat{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}, {{0, 1, 2}}};
+  const Halfedges flat_halfedges = build_halfedges(flat);
+  EXPECT_FALSE(KeptShape::of({flat, flat_halfedges}));
 }
 
 TEST_F(CopiesOfAFile, OfABoxNeedTheOriginalAndAreFoundHoweverItIsTurned) {
