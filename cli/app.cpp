@@ -85,6 +85,7 @@ std::unique_ptr<CLI::App> make_app(Action& action) {
   add_survive_verb(*app, action);
   add_sample_verb(*app, action);
   add_ledger_verb(*app, action);
+  add_merge_verb(*app, action);
   add_keygen_verb(*app, action);
   return app;
 }

@@ -25,6 +25,7 @@ struct MarkArguments {
   fs::path recipients;
   fs::path records;
   fs::path pictures;  // directory
+  std::string shard;  // "3/7"
   bool json = false;
   bool dry_run = false;
   bool companions = false;
@@ -41,6 +42,10 @@ bool is_manifest(const fs::path& path) {
 
 bool has_manifest(const MarkArguments& arguments) {
   return arguments.inputs.size() == 1 && is_manifest(arguments.inputs[0]);
+}
+
+Shard shard_of(const MarkArguments& arguments) {
+  return arguments.shard.empty() ? Shard() : Shard::parsed(arguments.shard, "--shard");
 }
 
 // Opens the same jobs any number of times; the list on standard input is read once.
@@ -68,6 +73,18 @@ class Jobs {
     meshes_ = gather_named_files(arguments.inputs, std::cin, arguments.out);
   }
 
+  // Returns the jobs of one shard.
+  [[nodiscard]] std::unique_ptr<JobSource> open(const Shard& shard, const ShardPlan& plan) const {
+    if (shard.is_whole()) return open();
+    return std::make_unique<ShardSource>(open(), shard, plan);
+  }
+
+  // Returns the plan that all shards share.
+  [[nodiscard]] ShardPlan plan_of(const Shard& shard) const {
+    return shard.is_whole() ? ShardPlan() : plan_shards(*open());
+  }
+
+  // Returns all jobs.
   [[nodiscard]] std::unique_ptr<JobSource> open() const {
     if (has_manifest(arguments_)) {
       return with_copies(
@@ -87,9 +104,9 @@ class Jobs {
   std::vector<NamedFile> meshes_;
 };
 
-// Returns the ledger's place: beside the folder of the marked files, not in it, since that folder
-// is handed out; or beside the manifest that names the outputs.
-fs::path ledger_of(const MarkArguments& arguments) {
+// Returns the place of the ledger of the whole run: beside the folder of the marked files, not in
+// it, since that folder is handed out; or beside the manifest that names the outputs.
+fs::path base_ledger_of(const MarkArguments& arguments) {
   if (!arguments.run.ledger().empty()) return arguments.run.ledger();
   fs::path beside = arguments.out.empty() ? fs::path(arguments.inputs.front()) : arguments.out;
   beside = fs::absolute(beside).lexically_normal();
@@ -98,6 +115,23 @@ fs::path ledger_of(const MarkArguments& arguments) {
     throw Error(ErrorCode::Usage, beside, "", "has no place beside it for a ledger; name --ledger");
   }
   return beside += ".ledger";
+}
+
+// Shards have ledgers and records of their own, which merge makes into those of the whole.
+fs::path ledger_of(const MarkArguments& arguments) {
+  return name_for(shard_of(arguments), base_ledger_of(arguments));
+}
+
+fs::path records_of(const MarkArguments& arguments) {
+  return name_for(shard_of(arguments), arguments.records);
+}
+
+// Returns the ledger of the whole run, if this is a shard and there is one.
+std::optional<Ledger>& open_base(const MarkArguments& arguments, std::optional<Ledger>& base) {
+  std::error_code ignored;
+  const fs::path path = base_ledger_of(arguments);
+  if (!shard_of(arguments).is_whole() && fs::exists(path, ignored)) base.emplace(path);
+  return base;
 }
 
 std::vector<OwnFile> own_files(const MarkArguments& arguments) {
@@ -112,7 +146,7 @@ std::vector<OwnFile> own_files(const MarkArguments& arguments) {
   for (const char* ending : {"-wal", "-shm", "-journal"}) {
     files.push_back({ledger.string() + ending, "a file of the ledger", true});
   }
-  if (!arguments.records.empty()) files.push_back({arguments.records, "the records", true});
+  if (!arguments.records.empty()) files.push_back({records_of(arguments), "the records", true});
   return files;
 }
 
@@ -137,7 +171,7 @@ class MarkReport {
       : arguments_(arguments),
         tally_(arguments.run, order, total,
                {file_status_names().begin(), file_status_names().end()}) {
-    if (!arguments.records.empty()) records_.emplace(arguments.records, !order.is_first);
+    if (!arguments.records.empty()) records_.emplace(records_of(arguments), !order.is_first);
     if (!arguments.pictures.empty()) pictures_.emplace(renderer_arguments(arguments));
     has_table_ = !arguments.json && !arguments.run.is_quiet();
     if (has_table_ && order.is_first) print_table_heading(std::cout);
@@ -194,10 +228,17 @@ class MarkReport {
 int print_plan(const MarkArguments& arguments, const Jobs& jobs, const Key& key) {
   (void)check_plan(*jobs.open(), own_files(arguments));
   const fs::path path = ledger_of(arguments);
+  const Shard shard = shard_of(arguments);
   std::optional<Ledger> ledger;
+  std::optional<Ledger> base;
   std::optional<Resume> resume;
   std::error_code ignored;
-  if (fs::exists(path, ignored)) resume.emplace(ledger.emplace(path), 0, key, arguments.resume);
+  if (fs::exists(path, ignored)) {
+    resume.emplace(ledger.emplace(path), 0, key, arguments.resume,
+                   open_base(arguments, base) ? &*base : nullptr);
+  } else if (open_base(arguments, base)) {
+    resume.emplace(*base, 0, key, arguments.resume);
+  }
   std::size_t marked = 0;
   std::size_t kept = 0;
   std::size_t refused = 0;
@@ -221,7 +262,7 @@ int print_plan(const MarkArguments& arguments, const Jobs& jobs, const Key& key)
     std::cout << "\n";
   };
   const std::atomic<bool> stop{false};
-  const auto source = jobs.open();
+  const auto source = jobs.open(shard, jobs.plan_of(shard));
   if (resume) {
     plan_jobs(*source, *resume, print, stop);
   } else {
@@ -234,20 +275,35 @@ int print_plan(const MarkArguments& arguments, const Jobs& jobs, const Key& key)
   return refused == 0 ? kDone : kSomeFailed;
 }
 
+std::size_t count_jobs(JobSource& jobs) {
+  std::size_t count = 0;
+  while (jobs.next()) ++count;
+  return count;
+}
+
 int mark_share(const MarkArguments& arguments, const Jobs& jobs, const Key& key,
                const WorkOrder& order) {
   // a worker that came before has checked the plan and left its size
   std::atomic<std::uint64_t>& total = order.board->total;
-  if (order.is_first) total = check_plan(*jobs.open(), own_files(arguments));
+  const Shard shard = shard_of(arguments);
+  const ShardPlan plan = jobs.plan_of(shard);
+  if (order.is_first) {
+    total = check_plan(*jobs.open(), own_files(arguments));
+    if (!shard.is_whole()) total = count_jobs(*jobs.open(shard, plan));
+  }
   Ledger ledger(ledger_of(arguments));
+  std::optional<Ledger> base;
   const LoggedRun run(&ledger, order, "mark");
-  const Resume resume(ledger, run.id(), key, arguments.resume);
+  const Resume resume(ledger, run.id(), key, arguments.resume,
+                      open_base(arguments, base) ? &*base : nullptr);
   RunContext context = arguments.run.context(order);
+  context.shard = shard;
+  context.jobs_of_all = plan.jobs;
   context.resume = &resume;
   context.copies_companions = arguments.companions;
   context.keeps_shapes = !arguments.no_shapes;
   context.keeps_times = arguments.keep_times;
-  const auto source = jobs.open();
+  const auto source = jobs.open(shard, plan);
   const std::atomic<bool>& stop = order.board->stop();
   if (order.only) {
     run_jobs(*source, key, context, {}, stop);
@@ -265,6 +321,7 @@ int mark_share(const MarkArguments& arguments, const Jobs& jobs, const Key& key,
 
 int run_mark(const MarkArguments& arguments) {
   const Key key = arguments.key.load();
+  (void)shard_of(arguments);  // a mistake is to be known before the run
   const Jobs jobs(arguments);
   if (arguments.dry_run) return print_plan(arguments, jobs, key);
   return arguments.run.supervised(
@@ -290,6 +347,10 @@ void add_mark_verb(CLI::App& app, Action& action) {
       ->type_name("FILE");
   verb->add_option("--records", arguments->records, "Write one JSON record per mesh to this file")
       ->type_name("FILE");
+  verb->add_option("--shard", arguments->shard,
+                   "Mark part I of N alone, with a ledger and records of its own "
+                   "(name.shard-I-of-N); merge makes those of all parts into one")
+      ->type_name("I/N");
   verb->add_option("--render", arguments->pictures,
                    "Draw a picture that compares each mesh with its marked copy, in this directory")
       ->type_name("DIR");

@@ -12,6 +12,7 @@
 #include "engine/base/text.h"
 #include "manifests/json_line.h"
 #include "manifests/resume.h"
+#include "manifests/shard.h"
 #include "manifests/sweep.h"
 
 namespace triglyph {
@@ -35,18 +36,6 @@ struct SweepArguments {
   KeysArgument keys;
   RunArguments run;
 };
-
-// Enters "3/7" into the selection.
-void read_subset(const std::string& text, SweepSelection& selection) {
-  if (text.empty()) return;
-  char after = 0;
-  const int read =
-      std::sscanf(text.c_str(), "%9u/%9u%c", &selection.part, &selection.parts, &after);
-  if (read != 2 || selection.part < 1 || selection.part > selection.parts) {
-    throw Error(ErrorCode::Usage, {}, "",
-                "--subset is a part of so many, such as 3/7, not " + text);
-  }
-}
 
 double read_sample(const std::string& text) {
   if (text.empty()) return 1;
@@ -80,7 +69,9 @@ SweepOptions options_of(const SweepArguments& arguments) {
     if (below.size() > 1 && below.ends_with('/')) below.pop_back();
     options.selection.below.push_back(std::move(below));
   }
-  read_subset(arguments.subset, options.selection);
+  if (!arguments.subset.empty()) {
+    options.selection.part = Shard::parsed(arguments.subset, "--subset");
+  }
   options.selection.sample = read_sample(arguments.sample);
   if (arguments.younger_than > 0) {
     options.selection.marked_since = utc_before(arguments.younger_than);

@@ -21,6 +21,7 @@ void add_mark_verb(CLI::App& app, Action& action);
 void add_extract_verb(CLI::App& app, Action& action);
 void add_trace_verb(CLI::App& app, Action& action);
 void add_verify_verb(CLI::App& app, Action& action);
+void add_merge_verb(CLI::App& app, Action& action);
 void add_sweep_verb(CLI::App& app, Action& action);
 void add_measure_verb(CLI::App& app, Action& action);
 void add_render_verb(CLI::App& app, Action& action);

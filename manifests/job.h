@@ -12,12 +12,13 @@
 namespace triglyph {
 
 struct Job {
-  std::size_t index = 0;  // place in the run, from 0
+  std::size_t index = 0;  // place in what this process does, from 0
   std::filesystem::path mesh;
   std::filesystem::path out;
   MarkRequest request;
   std::shared_ptr<const Recipients> recipients = {};  // null: the job is not for several
   std::shared_ptr<const MeshOfCopies> copies = {};    // of jobs that are copies of one mesh
+  std::size_t place = 0;  // in the whole run, of which this process may do a shard, from 0
 };
 
 }  // namespace triglyph

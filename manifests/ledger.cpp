@@ -107,7 +107,7 @@ constexpr const char* kItemColumns =
     "SELECT target, source, input_hash, task, key, status, output_hash, record, run, place, "
     "finished FROM items ";
 constexpr const char* kStateColumns =
-    "SELECT target, state, change, expected, hash, accepted, line, run FROM states ";
+    "SELECT target, state, change, expected, hash, accepted, line, run, checked FROM states ";
 constexpr const char* kMarkColumns =
     "SELECT number, message_hex, recipient, mesh, out, scheme, options, key, input_hash, "
     "output_hash, issued FROM marks ";
@@ -218,8 +218,11 @@ class LedgerStatement {
 template <typename Database>
 class LedgerTransaction {
  public:
-  explicit LedgerTransaction(const Database& database) : database_(database) {
-    LedgerStatement(database_, "BEGIN IMMEDIATE").step();
+  // Within another transaction it is a part of that.
+  explicit LedgerTransaction(const Database& database)
+      : database_(database), done_(sqlite3_get_autocommit(database.handle) == 0) {
+    is_part_ = done_;
+    if (!is_part_) LedgerStatement(database_, "BEGIN IMMEDIATE").step();
   }
   ~LedgerTransaction() {
     if (!done_) sqlite3_exec(database_.handle, "ROLLBACK", nullptr, nullptr, nullptr);
@@ -227,13 +230,14 @@ class LedgerTransaction {
   LedgerTransaction(const LedgerTransaction&) = delete;
   LedgerTransaction& operator=(const LedgerTransaction&) = delete;
   void commit() {
-    LedgerStatement(database_, "COMMIT").step();
+    if (!is_part_) LedgerStatement(database_, "COMMIT").step();
     done_ = true;
   }
 
  private:
   const Database& database_;
-  bool done_ = false;
+  bool done_;
+  bool is_part_ = false;
 };
 
 template <typename Database>
@@ -291,14 +295,33 @@ LedgerItem item_in(const LedgerStatement& row) {
 }
 
 LedgerState state_in(const LedgerStatement& row) {
-  return {row.text_at(0), row.text_at(1),        row.text_at(2), row.text_at(3),
-          row.text_at(4), row.number_at(5) != 0, row.text_at(6), row.number_at(7)};
+  return {row.text_at(0),        row.text_at(1), row.text_at(2),   row.text_at(3), row.text_at(4),
+          row.number_at(5) != 0, row.text_at(6), row.number_at(7), row.text_at(8)};
 }
 
 LedgerMark mark_in(const LedgerStatement& row) {
   return {row.number_at(0), row.text_at(1), row.text_at(2), row.text_at(3),
           row.text_at(4),   row.text_at(5), row.text_at(6), row.text_at(7),
           row.text_at(8),   row.text_at(9), row.text_at(10)};
+}
+
+template <typename Database>
+void insert_mark(const Database& database, const LedgerMark& mark) {
+  LedgerStatement(database,
+                  "INSERT OR IGNORE INTO marks (message_hex, recipient, mesh, out, scheme, "
+                  "options, key, input_hash, output_hash, issued) VALUES (?, ?, ?, ?, ?, ?, ?, ?, "
+                  "?, coalesce(nullif(?, ''), strftime('%Y-%m-%dT%H:%M:%SZ', 'now')))")
+      .text(mark.message_hex)
+      .text(mark.recipient)
+      .bytes(mark.mesh)
+      .bytes(mark.out)
+      .text(mark.scheme)
+      .text(mark.options)
+      .text(mark.key)
+      .text(mark.input_hash)
+      .text(mark.output_hash)
+      .text(mark.issued)
+      .step();
 }
 
 }  // namespace
@@ -355,9 +378,11 @@ std::optional<LedgerItem> Ledger::find(std::string_view target) const {
 void Ledger::put(const LedgerItem& item, const std::optional<LedgerMark>& mark) {
   const std::lock_guard lock(database_->mutex);
   LedgerTransaction transaction(*database_);
-  LedgerStatement(*database_,
-                  "INSERT OR REPLACE INTO items (target, source, input_hash, task, key, status, "
-                  "output_hash, record, run, place) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
+  LedgerStatement(
+      *database_,
+      "INSERT OR REPLACE INTO items (target, source, input_hash, task, key, status, "
+      "output_hash, record, run, place, finished) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
+      "coalesce(nullif(?, ''), strftime('%Y-%m-%dT%H:%M:%SZ', 'now')))")
       .bytes(item.target)
       .bytes(item.source)
       .text(item.input_hash)
@@ -368,22 +393,36 @@ void Ledger::put(const LedgerItem& item, const std::optional<LedgerMark>& mark) 
       .text(item.record)
       .number(item.run)
       .number(static_cast<std::int64_t>(item.place))
+      .text(item.finished)
       .step();
-  if (mark) {
-    LedgerStatement(*database_,
-                    "INSERT OR IGNORE INTO marks (message_hex, recipient, mesh, out, scheme, "
-                    "options, key, input_hash, output_hash) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)")
-        .text(mark->message_hex)
-        .text(mark->recipient)
-        .bytes(mark->mesh)
-        .bytes(mark->out)
-        .text(mark->scheme)
-        .text(mark->options)
-        .text(mark->key)
-        .text(mark->input_hash)
-        .text(mark->output_hash)
-        .step();
-  }
+  if (mark) insert_mark(*database_, *mark);
+  transaction.commit();
+}
+
+void Ledger::put_mark(const LedgerMark& mark) {
+  const std::lock_guard lock(database_->mutex);
+  insert_mark(*database_, mark);
+}
+
+std::int64_t Ledger::put_run(const LedgerRun& run) {
+  const std::lock_guard lock(database_->mutex);
+  LedgerStatement(*database_,
+                  "INSERT INTO runs (verb, command, directory, version, started, ended, outcome) "
+                  "VALUES (?, ?, ?, ?, ?, nullif(?, ''), nullif(?, ''))")
+      .text(run.verb)
+      .bytes(run.command)
+      .bytes(run.directory)
+      .text(run.version)
+      .text(run.started)
+      .text(run.ended)
+      .text(run.outcome)
+      .step();
+  return sqlite3_last_insert_rowid(database_->handle);
+}
+
+void Ledger::in_one_step(const std::function<void()>& work) {
+  LedgerTransaction transaction(*database_);
+  work();
   transaction.commit();
 }
 
@@ -434,7 +473,8 @@ void Ledger::put_state(const LedgerState& state) {
   const std::lock_guard lock(database_->mutex);
   LedgerStatement(*database_,
                   "INSERT OR REPLACE INTO states (target, state, change, expected, hash, accepted, "
-                  "line, run) VALUES (?, ?, ?, ?, ?, ?, ?, ?)")
+                  "line, run, checked) VALUES (?, ?, ?, ?, ?, ?, ?, ?, coalesce(nullif(?, ''), "
+                  "strftime('%Y-%m-%dT%H:%M:%SZ', 'now')))")
       .bytes(state.target)
       .text(state.state)
       .text(state.change)
@@ -443,6 +483,7 @@ void Ledger::put_state(const LedgerState& state) {
       .number(state.is_accepted ? 1 : 0)
       .text(state.line)
       .number(state.run)
+      .text(state.checked)
       .step();
 }
 
@@ -508,6 +549,18 @@ void Ledger::for_each_result(const std::function<void(const LedgerResult&)>& vis
     visit({row.number_at(0), static_cast<std::uint64_t>(row.number_at(1)), row.text_at(2),
            row.text_at(3), row.text_at(4)});
   }
+}
+
+void Ledger::for_each_shape(const std::function<void(const LedgerShape&)>& visit) const {
+  const std::lock_guard lock(database_->mutex);
+  LedgerStatement row(*database_, "SELECT input_hash, bytes FROM shapes ORDER BY input_hash");
+  while (row.step()) visit({row.text_at(0), row.text_at(1)});
+}
+
+void Ledger::for_each_state(const std::function<void(const LedgerState&)>& visit) const {
+  const std::lock_guard lock(database_->mutex);
+  LedgerStatement row(*database_, std::string(kStateColumns) + "ORDER BY target");
+  while (row.step()) visit(state_in(row));
 }
 
 void Ledger::for_each_state(std::int64_t run,

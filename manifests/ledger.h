@@ -36,7 +36,7 @@ struct LedgerItem {
   std::string record;         // one line of JSON; see record.h
   std::int64_t run = 0;       // that made the item or last found it done
   std::uint64_t place = 0;    // in that run, from 0
-  std::string finished = {};  // UTC; when it was put
+  std::string finished = {};  // UTC; empty: it is put now
 };
 
 // How a sweep last found an output. There is one row for each, so that a sweep of an unchanged
@@ -50,6 +50,7 @@ struct LedgerState {
   bool is_accepted = false;  // the owner knows, and wants to hear no more of it
   std::string line;          // one JSON object: what the sweep prints with --json
   std::int64_t run = 0;      // the sweep
+  std::string checked = {};  // UTC
 };
 
 // The scheme of marks that displace every point, in the ledger: they are read with their mesh.
@@ -105,6 +106,15 @@ class Ledger {
 
   [[nodiscard]] std::optional<LedgerItem> find(std::string_view target) const;
 
+  // Enter what another ledger knows, with its times: a run, whose number here is returned, and a
+  // mark, as put() does.
+  [[nodiscard]] std::int64_t put_run(const LedgerRun& run);
+  void put_mark(const LedgerMark& mark);
+
+  // Calls `work`, of whose changes all are made or, if it throws, none. Not to be nested, and
+  // nothing else may use this object meanwhile.
+  void in_one_step(const std::function<void()>& work);
+
   // Inserts or replaces the item, and issues the mark unless one with the same input, output, key
   // and name was issued before; in one transaction.
   void put(const LedgerItem& item, const std::optional<LedgerMark>& mark);
@@ -140,6 +150,8 @@ class Ledger {
                         const std::function<void(const LedgerMark&)>& visit) const;
   void for_each_run(const std::function<void(const LedgerRun&)>& visit) const;
   void for_each_result(const std::function<void(const LedgerResult&)>& visit) const;
+  void for_each_shape(const std::function<void(const LedgerShape&)>& visit) const;
+  void for_each_state(const std::function<void(const LedgerState&)>& visit) const;
   void for_each_state(std::int64_t run, const std::function<void(const LedgerState&)>& visit) const;
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }

@@ -191,7 +191,7 @@ std::optional<Job> ManifestReader::next() {
   if (ready_.empty()) return std::nullopt;
   Job job = std::move(ready_.front());
   ready_.pop_front();
-  job.index = jobs_++;
+  job.place = job.index = jobs_++;
   return job;
 }
 
@@ -301,7 +301,7 @@ std::optional<Job> CopiesSource::next() {
     if (mesh_->recipients) mesh_->copies = std::make_shared<MeshOfCopies>();
   }
   Job job = *mesh_;
-  job.index = jobs_++;
+  job.place = job.index = jobs_++;
   if (!job.recipients) {
     mesh_.reset();
     return job;
@@ -324,7 +324,9 @@ MeshList::MeshList(std::vector<NamedFile> meshes, const OptionValues& values,
 std::optional<Job> MeshList::next() {
   if (next_ == meshes_.size()) return std::nullopt;
   const NamedFile& mesh = meshes_[next_];
-  return Job{next_++, mesh.path, place_below(out_directory_, mesh.path, mesh.root), request_};
+  Job job{next_++, mesh.path, place_below(out_directory_, mesh.path, mesh.root), request_};
+  job.place = job.index;
+  return job;
 }
 
 std::size_t check_plan(JobSource& jobs, std::span<const OwnFile> own_files) {

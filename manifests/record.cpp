@@ -106,17 +106,22 @@ FluxMark flux_in(const Json& json) {
 
 Json run_of(const Record& record) {
   const StageTimes& times = record.file.times;
-  return {{"load_s", times.load},
-          {"mark_s", times.mark},
-          {"layout_s", times.layout},
-          {"assign_s", times.assign},
-          {"write_s", times.write},
-          {"read_back_s", times.read_back},
-          {"measure_s", times.measure},
-          {"memory_estimate", record.memory_estimate},
-          {"peak_bytes", record.peak_bytes},
-          {"directory", record.directory},
-          {"place", record.index}};
+  Json run = {{"load_s", times.load},
+              {"mark_s", times.mark},
+              {"layout_s", times.layout},
+              {"assign_s", times.assign},
+              {"write_s", times.write},
+              {"read_back_s", times.read_back},
+              {"measure_s", times.measure},
+              {"memory_estimate", record.memory_estimate},
+              {"peak_bytes", record.peak_bytes},
+              {"directory", record.directory}};
+  if (!record.shard.empty()) {
+    run["shard"] = record.shard;
+    run["jobs"] = record.jobs;
+  }
+  run["place"] = record.index;  // the last: RecordsFile looks for it there
+  return run;
 }
 
 void read_run(const Json& run, Record& record) {
@@ -132,6 +137,8 @@ void read_run(const Json& run, Record& record) {
   record.memory_estimate = whole_number<std::uint64_t>(run, "memory_estimate");
   record.peak_bytes = whole_number<std::uint64_t>(run, "peak_bytes");
   record.directory = run.value("directory", std::string());
+  record.shard = run.value("shard", std::string());
+  if (!record.shard.empty()) record.jobs = whole_number<std::uint64_t>(run, "jobs");
   record.index = whole_number<std::size_t>(run, "place");
 }
 

@@ -19,6 +19,8 @@ inline constexpr int kRecordSchema = 2;
 struct Record {
   MarkedFile file;
   std::size_t index = 0;              // place in the run, from 0
+  std::string shard = {};             // "3/7", if the run was one
+  std::uint64_t jobs = 0;             // of the whole run, if this was a shard
   std::uint64_t memory_estimate = 0;  // bytes that the run reserved for the mesh
   std::uint64_t peak_bytes = 0;       // peak resident size of the process so far
   std::string directory = {};         // where the run stood, to which relative names refer

@@ -19,23 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Throws Error Usage unless the file is empty or begins with a record, which may be cut off
-// if it is all there is.
-void check_holds_records(const fs::path& path) {
-  errno = 0;
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw Error(ErrorCode::Unwritable, path, "", system_reason(errno));
-  std::string line;
-  try {
-    if (!read_line(stream, line)) return;
-    if (stream.eof() && line.starts_with("{\"schema\":")) return;
-    (void)parse_record(line);
-  } catch (const Error&) {
-    throw Error(ErrorCode::Usage, path, "",
-                "holds something other than records, which would be lost; name another file");
-  }
-}
-
 // A line of the file.
 struct Place {
   std::uint64_t place = 0;
@@ -130,6 +113,21 @@ void cut_off_torn_line(const fs::path& path) {
 }
 
 }  // namespace
+
+void check_holds_records(const fs::path& path) {
+  errno = 0;
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw Error(ErrorCode::Unwritable, path, "", system_reason(errno));
+  std::string line;
+  try {
+    if (!read_line(stream, line)) return;
+    if (stream.eof() && line.starts_with("{\"schema\":")) return;
+    (void)parse_record(line);
+  } catch (const Error&) {
+    throw Error(ErrorCode::Usage, path, "",
+                "holds something other than records, which would be lost; name another file");
+  }
+}
 
 RecordsFile::RecordsFile(const fs::path& path, bool append) : path_(path) {
   std::error_code ignored;

@@ -32,6 +32,10 @@ class RecordsFile {
   std::ofstream stream_;
 };
 
+// Throws Error Usage unless the file is empty or begins with a record, which may be cut off if it
+// is all there is: what else it holds must not be lost. Throws Unwritable if it cannot be read.
+void check_holds_records(const std::filesystem::path& path);
+
 // Returns a function that returns the records of a file, or of the items of a ledger, one by one,
 // and then nothing. Throws Error Unreadable for a file that cannot be read, Malformed for one
 // without a record; the function throws Error Malformed naming file and line, and Unreadable.

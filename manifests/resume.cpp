@@ -93,12 +93,14 @@ void enter_record(Ledger& ledger, std::int64_t run, const Record& record) {
   ledger.put(item, mark);
 }
 
-Resume::Resume(Ledger& ledger, std::int64_t run, const Key& key, const ResumeOptions& options)
-    : ledger_(ledger), run_(run), key_(key.fingerprint()), options_(options) {}
+Resume::Resume(Ledger& ledger, std::int64_t run, const Key& key, const ResumeOptions& options,
+               const Ledger* base)
+    : ledger_(ledger), base_(base), run_(run), key_(key.fingerprint()), options_(options) {}
 
 Decision Resume::decide(const Job& job) const {
-  const std::optional<LedgerItem> known = ledger_.find(canonical_name(job.out));
+  std::optional<LedgerItem> known = ledger_.find(canonical_name(job.out));
   const bool is_of_this_run = known && known->run == run_;
+  if (!known && base_ != nullptr) known = base_->find(canonical_name(job.out));
   if (options_.force && !is_of_this_run) return Decision::mark("--force");
   std::error_code ignored;
   if (!known) {
@@ -135,7 +137,7 @@ Decision Resume::decide(const Job& job) const {
   }
   decision.kind = Decision::Kind::Keep;
   decision.is_of_this_run = is_of_this_run;
-  decision.record->index = job.index;
+  decision.record->index = job.place;
   decision.record->file.mesh = job.mesh;
   decision.record->file.out = job.out;
   decision.record->is_kept = !is_of_this_run;
@@ -143,7 +145,8 @@ Decision Resume::decide(const Job& job) const {
 }
 
 std::optional<std::string> Resume::issued_before(const std::string& input_hash) const {
-  const std::optional<LedgerMark> mark = ledger_.mark_of(input_hash);
+  std::optional<LedgerMark> mark = ledger_.mark_of(input_hash);
+  if (!mark && base_ != nullptr) mark = base_->mark_of(input_hash);
   if (!mark || mark->key != key_) return std::nullopt;
   return "was issued as " + mark->out + " with " +
          (mark->message_hex.empty() ? "a filled mark" : shown(from_hex(mark->message_hex))) +
@@ -156,13 +159,22 @@ void Resume::enter(const Record& record) const {
 
 void Resume::keep_shape(const FileMarking& marking) const {
   const std::string& hash = marking.result().input_hash;
-  if (ledger_.has_shape(hash)) return;
+  if (ledger_.has_shape(hash) || (base_ != nullptr && base_->has_shape(hash))) return;
   const std::vector<char> bytes = marking.kept_shape();
   if (!bytes.empty()) ledger_.put_shape({hash, {bytes.begin(), bytes.end()}});
 }
 
 void Resume::keep(const Job& job) const {
-  ledger_.keep(canonical_name(job.out), run_, job.index);
+  const std::string target = canonical_name(job.out);
+  if (base_ != nullptr && !ledger_.find(target)) {
+    if (std::optional<LedgerItem> item = base_->find(target)) {
+      item->run = run_;
+      item->place = job.place;
+      ledger_.put(*item, std::nullopt);
+    }
+    return;
+  }
+  ledger_.keep(target, run_, job.place);
 }
 
 }  // namespace triglyph

@@ -40,7 +40,9 @@ struct Decision {
 class Resume {
  public:
   // The ledger must outlive the object. `run` is the number of the run in it.
-  Resume(Ledger& ledger, std::int64_t run, const Key& key, const ResumeOptions& options);
+  // `base` is the ledger of the whole, where this run has one for its shard; null: none.
+  Resume(Ledger& ledger, std::int64_t run, const Key& key, const ResumeOptions& options,
+         const Ledger* base = nullptr);
 
   // Decides from the ledger and the files. Hashes input and output if the ledger knows a result
   // for the same request. Throws Error Unwritable if the ledger cannot be read.
@@ -62,6 +64,7 @@ class Resume {
 
  private:
   Ledger& ledger_;
+  const Ledger* base_;
   std::int64_t run_;
   std::string key_;  // fingerprint
   ResumeOptions options_;

@@ -132,7 +132,11 @@ class MarkWork {
     Record& record = item.record;
     record.file = marking.result();
     record.file.key_fingerprint = key_.fingerprint();  // also of what was never marked
-    record.index = item.index;
+    record.index = item.job.place;
+    if (!context_.shard.is_whole()) {
+      record.shard = context_.shard.text();
+      record.jobs = context_.jobs_of_all;
+    }
     record.memory_estimate = item.memory_estimate;
     record.peak_bytes = peak_bytes();
     record.directory = directory_;

@@ -170,8 +170,9 @@ class SweepSource {
     }
     if (!is_below || output.finished < selection.marked_since) return false;
     // seed 0 is that of the parts; runs count from 1
-    const auto part = static_cast<std::uint32_t>(share_of(output.target, 0) * selection.parts) + 1;
-    return part == selection.part &&
+    const auto part =
+        static_cast<std::uint32_t>(share_of(output.target, 0) * selection.part.count) + 1;
+    return part == selection.part.number &&
            (selection.sample >= 1 ||
             share_of(output.target, static_cast<std::uint64_t>(run_)) < selection.sample);
   }

@@ -19,6 +19,7 @@
 #include "engine/message/key.h"
 #include "manifests/ledger.h"
 #include "manifests/run_context.h"
+#include "manifests/shard.h"
 
 namespace triglyph {
 
@@ -59,10 +60,8 @@ struct SweptFile {
 // Which outputs of a ledger a sweep looks at: those that have all of the properties.
 struct SweepSelection {
   std::vector<std::string> below = {};  // canonical names of files or folders; empty: all
-  // Part `part` of `parts` nearly equal ones, from 1; by a hash of the name, so that each file
-  // stays in its part.
-  std::uint32_t part = 1;
-  std::uint32_t parts = 1;
+  // One of several nearly equal parts, by a hash of the name, so that each file stays in its part.
+  Shard part = {};
   double sample = 1;              // share of the files, others in each sweep
   std::string marked_since = {};  // UTC, as the ledger writes times; empty: ever
 };

@@ -39,7 +39,7 @@ std::vector<char> packed(const Mesh& mesh) {
   PackedHeader header;
   header.points = static_cast<std::uint32_t>(mesh.positions.size());
   header.triangles = static_cast<std::uint32_t>(mesh.triangles.size());
-  header.unit = std::max({size[0], size[1], size[2]}) / kLargest;
+  if (!mesh.positions.empty()) header.unit = std::max({size[0], size[1], size[2]}) / kLargest;
   std::vector<PackedPoint> points;
   for (const Vec3& p : mesh.positions) {
     PackedPoint& point = points.emplace_back();

@@ -1,5 +1,7 @@
 // The verb sweep.
+#include <algorithm>
 #include <fstream>
+#include <map>
 #include <sstream>
 
 #include <pugixml.hpp>

@@ -287,9 +287,9 @@ TEST(SweepSelection, PartsAreDisjointCompleteAndNearlyEqual) {
   Names names;
   std::set<std::string> all;
   for (std::uint32_t part = 1; part <= 7; ++part) {
-    const std::set<std::string> some = names.swept({.part = part, .parts = 7});
+    const std::set<std::string> some = names.swept({.part = {part, 7}});
     EXPECT_NEAR(static_cast<double>(some.size()), Names::kCount / 7., 75);  // five deviations
-    EXPECT_EQ(some, names.swept({.part = part, .parts = 7}));
+    EXPECT_EQ(some, names.swept({.part = {part, 7}}));
     for (const std::string& name : some) EXPECT_TRUE(all.insert(name).second);
   }
   EXPECT_EQ(all.size(), Names::kCount - 1);  // one was not marked
