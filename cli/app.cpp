@@ -83,6 +83,7 @@ std::unique_ptr<CLI::App> make_app(Action& action) {
   add_render_verb(*app, action);
   add_attack_verb(*app, action);
   add_survive_verb(*app, action);
+  add_profile_verb(*app, action);
   add_sample_verb(*app, action);
   add_ledger_verb(*app, action);
   add_merge_verb(*app, action);
@@ -91,6 +92,7 @@ std::unique_ptr<CLI::App> make_app(Action& action) {
 }
 
 int run_app(int argc, char** argv) try {
+  std::signal(SIGUSR1, SIG_IGN);  // which asks a run how far it is, and other verbs nothing
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error of its own
   set_command_line(argc, argv);
   Action action;

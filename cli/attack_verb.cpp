@@ -153,11 +153,13 @@ void print_result(const AttackResult& result, std::uint64_t seed, bool json) {
 int run_attack(const MeshAttackArguments& arguments) {
   const std::vector<AttackJob> jobs = jobs_of(arguments);
   const std::uint64_t seed = arguments.attacks.seed();
-  return arguments.run.supervised([&](const WorkOrder& order) {
+  return arguments.run.supervised({"attack", {"attacked", "failed"}}, [&](const WorkOrder& order) {
     std::optional<Ledger> ledger;
     if (!arguments.run.ledger().empty()) ledger.emplace(arguments.run.ledger());
     const LoggedRun run(ledger ? &*ledger : nullptr, order, "attack");
-    RunTally tally(arguments.run, order, jobs.size(), {"attacked", "failed"});
+    std::vector<fs::path> files;
+    for (const AttackJob& job : jobs) files.push_back(job.mesh);
+    RunTally tally(arguments.run, order, files, {"attacked", "failed"});
     attack_files(
         jobs, seed, arguments.run.context(order),
         [&](const AttackResult& result) {

@@ -191,12 +191,12 @@ int run_extract(const ExtractArguments& arguments) {
     encodings = std::move(recorded);
   }
   const std::vector<std::filesystem::path> files = gather_files(arguments.inputs, std::cin);
-  return arguments.run.supervised([&](const WorkOrder& order) {
+  return arguments.run.supervised({"extract", kinds_of_results()}, [&](const WorkOrder& order) {
     std::optional<Ledger> ledger;
     if (!arguments.run.ledger().empty()) ledger.emplace(arguments.run.ledger());
     if (ledger) known.merge(messages_in(*ledger));
     const LoggedRun run(ledger ? &*ledger : nullptr, order, "extract");
-    RunTally tally(arguments.run, order, files.size(), kinds_of_results());
+    RunTally tally(arguments.run, order, files, kinds_of_results());
     read_files(
         files, encodings, keys, arguments.run.context(order),
         [&](ReadResult result) {

@@ -3,6 +3,7 @@
 
 #include "cli/app.h"
 #include "cli/options.h"
+#include "cli/progress.h"
 #include "cli/run_arguments.h"
 #include "cli/screen.h"
 #include "cli/sibling.h"
@@ -150,6 +151,22 @@ std::vector<OwnFile> own_files(const MarkArguments& arguments) {
   return files;
 }
 
+// Jobs whose meshes are measured in passing.
+class MeasuredJobs final : public JobSource {
+ public:
+  explicit MeasuredJobs(std::unique_ptr<JobSource> jobs) : jobs_(std::move(jobs)) {}
+  [[nodiscard]] std::optional<Job> next() override {
+    std::optional<Job> job = jobs_->next();
+    if (job) bytes_ += bytes_of_file(job->mesh);
+    return job;
+  }
+  [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
+
+ private:
+  std::unique_ptr<JobSource> jobs_;
+  std::uint64_t bytes_ = 0;
+};
+
 // Returns the path of the picture: relative to its directory as the marked file is to its own.
 fs::path picture_of(const Record& record, const MarkArguments& arguments) {
   fs::path name = record.file.out.lexically_relative(arguments.out);
@@ -288,8 +305,10 @@ int mark_share(const MarkArguments& arguments, const Jobs& jobs, const Key& key,
   const Shard shard = shard_of(arguments);
   const ShardPlan plan = jobs.plan_of(shard);
   if (order.is_first) {
-    total = check_plan(*jobs.open(), own_files(arguments));
-    if (!shard.is_whole()) total = count_jobs(*jobs.open(shard, plan));
+    (void)check_plan(*jobs.open(), own_files(arguments));
+    MeasuredJobs measured(jobs.open(shard, plan));
+    total = count_jobs(measured);
+    order.board->total_bytes = measured.bytes();
   }
   Ledger ledger(ledger_of(arguments));
   std::optional<Ledger> base;
@@ -325,6 +344,7 @@ int run_mark(const MarkArguments& arguments) {
   const Jobs jobs(arguments);
   if (arguments.dry_run) return print_plan(arguments, jobs, key);
   return arguments.run.supervised(
+      {"mark", {file_status_names().begin(), file_status_names().end()}},
       [&](const WorkOrder& order) { return mark_share(arguments, jobs, key, order); });
 }
 

@@ -90,7 +90,7 @@ void print_measured(const PairResult& result, bool json, bool is_first) {
 int run_measure(const MeasureArguments& arguments) {
   const bool is_run = name_many_pairs(arguments.inputs);
   (void)pairs_of(arguments.inputs);  // a mistake is to be known before the run
-  return arguments.run.supervised([&](const WorkOrder& order) {
+  return arguments.run.supervised({"measure", {"measured", "failed"}}, [&](const WorkOrder& order) {
     std::optional<Ledger> ledger;
     if (!arguments.run.ledger().empty()) ledger.emplace(arguments.run.ledger());
     const LoggedRun run(ledger ? &*ledger : nullptr, order, "measure");

@@ -131,8 +131,9 @@ int run_render(const std::vector<std::string>& words) {
   if (!names_many || asks_for_help(words)) exec_renderer(words);
   parse({words.begin() + static_cast<std::ptrdiff_t>(names.size()), words.end()}, arguments);
   (void)pairs_of(names);  // a mistake is to be known before the run
-  return arguments.run.supervised(
-      [&](const WorkOrder& order) { return draw_share(arguments, order); });
+  return arguments.run.supervised({"render", {"drawn", "failed"}}, [&](const WorkOrder& order) {
+    return draw_share(arguments, order);
+  });
 }
 
 }  // namespace

@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <iostream>
 
 #include "cli/app.h"
+#include "cli/progress.h"
+#include "cli/run_watch.h"
 #include "cli/screen.h"
 #include "engine/base/error.h"
 #include "engine/base/parallel.h"
@@ -18,10 +19,6 @@
 
 namespace triglyph {
 namespace {
-
-// Places among RunBoard::counters; the kinds of results come before.
-constexpr std::size_t kMostKinds = 24;
-enum Counter : std::size_t { kRunId = kMostKinds, kStarted, kFailed, kKept, kBytes };
 
 std::string& stored_command_line() {
   static std::string text;
@@ -37,12 +34,6 @@ std::string quoted(const std::string& word) {
   std::string text = "'";
   for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return text + "'";
-}
-
-std::uint64_t milliseconds() {
-  return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::milliseconds>(
-                                        std::chrono::steady_clock::now().time_since_epoch())
-                                        .count());
 }
 
 std::string rounded(double value, const char* unit) {
@@ -91,27 +82,45 @@ void RunArguments::add_to(CLI::App& verb) {
       ->type_name("SECONDS");
   failures_.add_to(verb);
   verb.add_flag("--quiet", quiet_, "Print no table, no progress and no summary, only errors");
+  verb.add_option("--progress", progress_,
+                  "Say how far the run is: a bar, if standard error is a terminal; JSON objects, "
+                  "one a second on standard error; or nothing (default: bar)")
+      ->check(CLI::IsMember({"bar", "json", "none"}).description(""))
+      ->type_name("bar|json|none");
+  verb.add_option("--trace", trace_,
+                  "Write what every thread does, and when, to this file, which Perfetto and "
+                  "chrome://tracing show")
+      ->type_name("FILE");
+  verb.add_option("--metrics", metrics_,
+                  "Keep the state of the run in this file, as OpenMetrics, renewed every five "
+                  "seconds")
+      ->type_name("FILE");
   verb.add_option("--ledger", ledger_, "Remember the run in this file")->type_name("FILE");
 }
 
 RunContext RunArguments::context(const WorkOrder& order) const {
   RunContext context;
   context.flow.memory_bytes = machine_.memory_bytes();
+  context.flow.trace = order.trace;
   context.order = &order;
   return context;
 }
 
-int RunArguments::supervised(const std::function<int(const WorkOrder&)>& work) const {
+int RunArguments::supervised(const RunName& name,
+                             const std::function<int(const WorkOrder&)>& work) const {
   (void)failure_limit(100);  // a mistake is to be known before the run
+  RunWatch watch(name, {progress_ == "json", trace_, metrics_});
   const std::optional<int> code = supervise(
       [&](const WorkOrder& order) {
         std::signal(SIGPIPE, SIG_IGN);  // what cannot be written is an error of its own
+        const WorkOrder watched = watch.traced(order);
         int result = kFatal;
-        with_threads(machine_.threads(), [&] { result = work(order); });
+        with_threads(machine_.threads(), [&] { result = work(watched); });
         check_standard_output();
         return result;
       },
-      timeout_);
+      timeout_, watch.events());
+  watch.finish();
   if (code) return *code;
   std::cerr << "triglyph: interrupted\n";
   return kInterrupted;
@@ -123,19 +132,29 @@ RunTally::RunTally(const RunArguments& arguments, const WorkOrder& order, std::s
       board_(*order.board),
       limit_(arguments.failure_limit(total)),
       kinds_(std::move(kinds)),
-      bar_(total, order.board->delivered, arguments.is_quiet()) {
+      bar_(arguments.has_bar()) {
   check(kinds_.size() <= kMostKinds, "a counter for every kind of result");
-  if (order.is_first) board_.counters[kStarted] = milliseconds();
+  if (!order.is_first) return;
+  board_.counters[kStarted] = milliseconds_now();
+  board_.total = total;
+}
+
+RunTally::RunTally(const RunArguments& arguments, const WorkOrder& order,
+                   std::span<const std::filesystem::path> files,
+                   std::vector<std::string_view> kinds)
+    : RunTally(arguments, order, files.size(), std::move(kinds)) {
+  if (!order.is_first) return;
+  for (const std::filesystem::path& file : files) board_.total_bytes += bytes_of_file(file);
 }
 
 void RunTally::count(std::size_t kind, bool failed, bool kept, const std::filesystem::path& input) {
   ++board_.counters[kind];
   if (kept) ++board_.counters[kKept];
-  std::error_code error;
-  const auto bytes = std::filesystem::file_size(input, error);
-  if (!error) board_.counters[kBytes] += bytes;
+  const std::uint64_t bytes = bytes_of_file(input);
+  board_.counters[kBytes] += bytes;
+  if (kept) board_.counters[kKeptBytes] += bytes;
   if (failed && ++board_.counters[kFailed] > limit_.value_or(~std::uint64_t{0})) board_.give_up();
-  bar_.advance(failed);
+  bar_.advance([this] { return progress_of(board_); });
 }
 
 std::uint64_t RunTally::failed() const {
@@ -157,7 +176,7 @@ int RunTally::finish(std::string_view one, std::string_view several) {
     parts += (parts.empty() ? "" : ", ") + std::to_string(count) + " " + std::string(kinds_[kind]);
   }
   const double seconds =
-      std::max(1e-3, static_cast<double>(milliseconds() - board_.counters[kStarted]) / 1000);
+      std::max(1e-3, static_cast<double>(milliseconds_now() - board_.counters[kStarted]) / 1000);
   const double megabytes = static_cast<double>(board_.counters[kBytes]) / 1e6;
   std::string line = std::to_string(all) + " " + std::string(all == 1 ? one : several);
   if (!parts.empty()) line += ": " + parts;

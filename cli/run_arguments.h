@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,12 +34,20 @@ class FailureLimit {
   bool fail_fast_ = false;
 };
 
-// The options --threads, --memory, --timeout, --max-failures, --fail-fast, --quiet and --ledger.
+// What a run is, for those who watch it.
+struct RunName {
+  std::string_view verb;
+  std::vector<std::string_view> kinds;  // of results, as RunTally counts them
+};
+
+// The options --threads, --memory, --timeout, --max-failures, --fail-fast, --quiet, --progress,
+// --trace, --metrics and --ledger.
 class RunArguments {
  public:
   void add_to(CLI::App& verb);
 
   [[nodiscard]] bool is_quiet() const { return quiet_; }
+  [[nodiscard]] bool has_bar() const { return !quiet_ && progress_ == "bar"; }
   [[nodiscard]] int threads() const { return machine_.threads(); }
   [[nodiscard]] const std::filesystem::path& ledger() const { return ledger_; }
   [[nodiscard]] std::optional<std::uint64_t> failure_limit(std::size_t total) const {
@@ -46,14 +55,19 @@ class RunArguments {
   }
   [[nodiscard]] RunContext context(const WorkOrder& order) const;
 
-  // Runs `work` in a supervised process with the threads asked for, and returns the exit code.
-  [[nodiscard]] int supervised(const std::function<int(const WorkOrder&)>& work) const;
+  // Runs `work` in a supervised process with the threads asked for, watches it as asked for, and
+  // returns the exit code.
+  [[nodiscard]] int supervised(const RunName& name,
+                               const std::function<int(const WorkOrder&)>& work) const;
 
  private:
   MachineArguments machine_;
   FailureLimit failures_;
   double timeout_ = 0;
   bool quiet_ = false;
+  std::string progress_ = "bar";
+  std::filesystem::path trace_;
+  std::filesystem::path metrics_;
   std::filesystem::path ledger_;
 };
 
@@ -65,6 +79,10 @@ class RunTally {
   // its board must outlive the tally.
   RunTally(const RunArguments& arguments, const WorkOrder& order, std::size_t total,
            std::vector<std::string_view> kinds);
+
+  // Likewise for files that are known; their sizes are asked for once in a run.
+  RunTally(const RunArguments& arguments, const WorkOrder& order,
+           std::span<const std::filesystem::path> files, std::vector<std::string_view> kinds);
 
   // To be called before anything else is printed, which the bar would mix with.
   void clear_bar() { bar_.clear(); }

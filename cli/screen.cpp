@@ -6,6 +6,7 @@
 #include <ostream>
 #include <string>
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include "engine/base/text.h"
@@ -54,46 +55,38 @@ void print_table_row(std::ostream& out, const Record& record) {
       << name_of(file.status) << (record.is_kept ? " (kept)" : "") << "\n";
 }
 
-ProgressBar::ProgressBar(std::size_t total, std::size_t done, bool quiet)
-    : total_(total),
-      done_(done),
-      start_s_(now_s()),
-      visible_(!quiet && isatty(STDERR_FILENO) == 1) {}
+ProgressBar::ProgressBar(bool wanted) : visible_(wanted && isatty(STDERR_FILENO) == 1) {}
 
 ProgressBar::~ProgressBar() {
   clear();
 }
 
-void ProgressBar::advance(bool failed) {
-  ++done_;
-  failed_ += failed ? 1 : 0;
+void ProgressBar::advance(const std::function<Progress()>& progress) {
+  if (!visible_) return;
   const double now = now_s();
-  if (!visible_ || (now - last_draw_s_ < 0.1 && done_ != total_)) return;
+  if (now - last_draw_s_ < 0.1) return;
   last_draw_s_ = now;
-  draw();
-}
-
-void ProgressBar::draw() {
-  if (total_ == 0) {
-    std::fputs(format("\r\033[K%zu files, %zu failed", done_, failed_).c_str(), stderr);
-    std::fflush(stderr);
-    return;
+  const Progress state = progress();
+  std::string text;
+  if (const auto share = state.share()) {
+    const std::string bar(static_cast<std::size_t>(20 * std::min(*share, 1.0)), '#');
+    text = format("[%-20s] ", bar.c_str());
   }
-  const double share = static_cast<double>(done_) / static_cast<double>(total_);
-  const std::string bar(static_cast<std::size_t>(30 * std::min(share, 1.0)), '#');
-  const double elapsed = now_s() - start_s_;
-  const double left = share > 0 ? elapsed * (1 - share) / share : 0;
-  std::fputs(format("\r\033[K[%-30s] %zu/%zu files, %zu failed, %.0f s left", bar.c_str(), done_,
-                    total_, failed_, std::max(left, 0.0))
-                 .c_str(),
-             stderr);
+  text += text_of(state);
+  // a line that is longer than the terminal is wide could not be drawn over
+  winsize window{};
+  const bool is_known = ioctl(STDERR_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 1;
+  text.resize(std::min<std::size_t>(text.size(), is_known ? window.ws_col - 1U : 79U));
+  std::fputs(("\r\033[K" + text).c_str(), stderr);
   std::fflush(stderr);
+  is_drawn_ = true;
 }
 
 void ProgressBar::clear() {
-  if (!visible_ || done_ == 0) return;
+  if (!is_drawn_) return;
   std::fputs("\r\033[K", stderr);
   std::fflush(stderr);
+  is_drawn_ = false;
 }
 
 }  // namespace triglyph

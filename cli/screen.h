@@ -1,8 +1,10 @@
 // Terminal output and input: a table of records, a progress bar, and the interrupt key.
 #pragma once
 
+#include <functional>
 #include <iosfwd>
 
+#include "cli/progress.h"
 #include "manifests/record.h"
 
 namespace triglyph {
@@ -16,19 +18,15 @@ void print_table_row(std::ostream& out, const Record& record);
 // error is a terminal.
 class ProgressBar {
  public:
-  // Starts at `done`, the number of files that are done already. A `total` of 0 is not known.
-  ProgressBar(std::size_t total, std::size_t done, bool quiet);
+  explicit ProgressBar(bool wanted);
   ~ProgressBar();
-  void advance(bool failed);
+  // Draws the bar if it is time; only then asks for the progress.
+  void advance(const std::function<Progress()>& progress);
   void clear();  // before other output to the same terminal
 
  private:
-  void draw();
-  std::size_t total_;
-  std::size_t done_ = 0;
-  std::size_t failed_ = 0;
   double last_draw_s_ = 0;
-  double start_s_ = 0;
+  bool is_drawn_ = false;
   bool visible_;
 };
 

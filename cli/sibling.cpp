@@ -80,6 +80,7 @@ RendererProcess start_renderer(const std::vector<std::string>& arguments, bool d
     }
     // the run handles interrupts, and then stops its renderer
     std::signal(SIGINT, SIG_IGN);
+    std::signal(SIGUSR1, SIG_IGN);  // a question about the run is none to its renderers
     dup2(jobs[0], STDIN_FILENO);
     dup2(answers[1], STDOUT_FILENO);
     execv(program.c_str(), all.data());

@@ -125,6 +125,14 @@ class SweepReport {
   SweepReport(const SweepArguments& arguments, const WorkOrder& order)
       : arguments_(arguments), tally_(arguments.run, order, 0, kinds()) {}
 
+  // The states, and what is no news of its state.
+  static std::vector<std::string_view> kinds() {
+    std::vector<std::string_view> names = file_state_names();
+    names.emplace_back("restored");
+    names.emplace_back("accepted");
+    return names;
+  }
+
   void add(const SweptFile& file, const LoggedRun& run) {
     tally_.clear_bar();
     print(arguments_, file);
@@ -149,13 +157,6 @@ class SweepReport {
   }
 
  private:
-  // The states, and what is no news of its state.
-  static std::vector<std::string_view> kinds() {
-    std::vector<std::string_view> names = file_state_names();
-    names.emplace_back("restored");
-    names.emplace_back("accepted");
-    return names;
-  }
   static std::size_t restored() { return file_state_names().size(); }
 
   static bool is_restored(const SweptFile& file) {
@@ -177,7 +178,7 @@ int run_sweep(const SweepArguments& arguments) {
   const fs::path& path = arguments.run.ledger();
   if (path.empty()) throw Error(ErrorCode::Usage, {}, "", "name the --ledger of the library");
   if (!is_ledger_file(path)) throw Error(ErrorCode::Unreadable, path, "", "is no ledger");
-  return arguments.run.supervised([&](const WorkOrder& order) {
+  return arguments.run.supervised({"sweep", SweepReport::kinds()}, [&](const WorkOrder& order) {
     Ledger ledger(path);
     std::error_code ignored;
     const std::optional<std::int64_t> unfinished =

@@ -72,7 +72,7 @@ int run_trace(const TraceArguments& arguments) {
   const auto list = arguments.recipients.empty() ? nullptr : read_recipients(arguments.recipients);
   const std::vector<MarkOptions> options = options_of_list(arguments.values);
   const std::vector<fs::path> files = gather_files(arguments.inputs, std::cin);
-  return arguments.run.supervised([&](const WorkOrder& order) {
+  return arguments.run.supervised({"trace", kinds_of_traces()}, [&](const WorkOrder& order) {
     std::optional<Ledger> ledger;
     if (!path.empty()) ledger.emplace(path);
     const KnownCopies known =
@@ -83,7 +83,7 @@ int run_trace(const TraceArguments& arguments) {
       throw Error(ErrorCode::Usage, path, "", "knows no copy that was marked under these keys");
     }
     const LoggedRun run(ledger ? &*ledger : nullptr, order, "trace");
-    RunTally tally(arguments.run, order, files.size(), kinds_of_traces());
+    RunTally tally(arguments.run, order, files, kinds_of_traces());
     const TraceOptions trace{arguments.false_alarm, std::max<std::size_t>(arguments.most, 1),
                              static_cast<double>(files.size())};
     const TraceReport report({.names = names,

@@ -25,6 +25,7 @@ void add_merge_verb(CLI::App& app, Action& action);
 void add_sweep_verb(CLI::App& app, Action& action);
 void add_measure_verb(CLI::App& app, Action& action);
 void add_render_verb(CLI::App& app, Action& action);
+void add_profile_verb(CLI::App& app, Action& action);
 void add_sample_verb(CLI::App& app, Action& action);
 void add_attack_verb(CLI::App& app, Action& action);
 void add_survive_verb(CLI::App& app, Action& action);

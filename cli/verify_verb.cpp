@@ -144,7 +144,7 @@ int run_verify(const VerifyArguments& arguments) {
   if (!ledger.empty() && !is_ledger_file(ledger)) {
     throw Error(ErrorCode::Unreadable, ledger, "", "is no ledger");
   }
-  return arguments.run.supervised([&](const WorkOrder& order) {
+  return arguments.run.supervised({"verify", verdict_names()}, [&](const WorkOrder& order) {
     const RecordSource records = files.empty() ? records_in(inputs) : records_of(files, ledger);
     RunTally tally(arguments.run, order, 0, verdict_names());
     std::optional<Ledger> log;

@@ -31,11 +31,11 @@ void attempt(FileItem& item, const Work& work) {
   }
 }
 
-// Runs `work` for every item of the source, and calls `deliver` for those that were done. `Item` is
-// derived from FileItem.
+// Runs `work`, which a trace calls `stage`, for every item of the source, and calls `deliver` for
+// those that were done. `Item` is derived from FileItem.
 template <typename Item, typename Source, typename Work, typename Deliver>
-void run_files(const Source& source, const Work& work, const Deliver& deliver,
-               const RunContext& context, const std::atomic<bool>& stop) {
+void run_files(std::string_view stage, const Source& source, const Work& work,
+               const Deliver& deliver, const RunContext& context, const std::atomic<bool>& stop) {
   const StopScope scope(stop);
   const Share share(context);
   std::size_t next = 0;
@@ -53,7 +53,8 @@ void run_files(const Source& source, const Work& work, const Deliver& deliver,
     if (const Casualty* casualty = share.casualty(item.index)) {
       item.failure = {status_of(*casualty), item.file.string() + ": " + casualty->reason};
     } else {
-      const BoardEntry entry(context.order, item.index);
+      const BoardEntry entry(context.order, item.index, item.name());
+      const TraceSpan span(context.flow.trace, stage, item.name());
       fail_if_asked(item.file);
       attempt(item, [&] { work(item); });
     }
@@ -98,11 +99,12 @@ struct PairItem final : FileItem {
 
 }  // namespace
 
-void run_file_items(const std::function<std::unique_ptr<FileItem>()>& source,
+void run_file_items(std::string_view stage,
+                    const std::function<std::unique_ptr<FileItem>()>& source,
                     const std::function<void(FileItem&)>& work,
                     const std::function<void(FileItem&)>& deliver, const RunContext& context,
                     const std::atomic<bool>& stop) {
-  run_files<FileItem>(source, work, deliver, context, stop);
+  run_files<FileItem>(stage, source, work, deliver, context, stop);
 }
 
 void read_files(std::span<const fs::path> files, std::span<const Encoding> encodings,
@@ -117,7 +119,7 @@ void read_files(std::span<const fs::path> files, std::span<const Encoding> encod
     return item;
   };
   run_files<ReadItem>(
-      source, [&](ReadItem& item) { item.reading = read_file(item.file, encodings, keys); },
+      "read", source, [&](ReadItem& item) { item.reading = read_file(item.file, encodings, keys); },
       [&](ReadItem& item) {
         on_result({item.file, std::move(item.reading), std::move(item.failure)});
       },
@@ -140,7 +142,7 @@ void trace_files(std::span<const fs::path> files, std::span<const Suspects> susp
     return item;
   };
   run_files<TraceItem>(
-      source,
+      "trace", source,
       [&](TraceItem& item) {
         FileTrace trace = trace_file(item.file, suspects, options);
         const bool names_one = !trace.names.empty() && options.believes(trace.names[0]);
@@ -168,7 +170,8 @@ void attack_files(std::span<const AttackJob> jobs, std::uint64_t seed, const Run
     return item;
   };
   run_files<AttackItem>(
-      source, [&](AttackItem& item) { item.result.attacked = attacked(item.result.job, seed); },
+      "attack", source,
+      [&](AttackItem& item) { item.result.attacked = attacked(item.result.job, seed); },
       [&](AttackItem& item) {
         item.result.failure = std::move(item.failure);
         on_result(item.result);
@@ -189,7 +192,7 @@ void verify_files(const RecordSource& records, const Key& key, bool locate,
     return item;
   };
   run_files<VerifyItem>(
-      source,
+      "verify", source,
       [&](VerifyItem& item) { item.verification = verify_file(item.record.file, key, locate); },
       [&](VerifyItem& item) {
         if (item.failure) {
@@ -213,7 +216,7 @@ void run_pairs(const PairSource& pairs, const std::function<void(PairResult&)>& 
     return item;
   };
   run_files<PairItem>(
-      source, [&](PairItem& item) { work(item.result); },
+      "pair", source, [&](PairItem& item) { work(item.result); },
       [&](PairItem& item) {
         if (item.failure) item.result.failure = std::move(item.failure);
         on_result(item.result);

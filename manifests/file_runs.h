@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -34,12 +35,16 @@ struct FileItem : FlowItem {
   std::filesystem::path file;
   std::optional<FileFailure> failure = {};
   bool is_done = false;  // not set by the work
+
+  [[nodiscard]] std::string_view name() const override { return file.native(); }
 };
 
-// Runs `work` for every item that the source returns before null, in parallel, and `deliver` in
-// their order, one call at a time. An exception of `work` becomes the failure of its item, as does
-// the death of an earlier worker; one of the source or of `deliver` ends the run and is rethrown.
-void run_file_items(const std::function<std::unique_ptr<FileItem>()>& source,
+// Runs `work`, which a trace calls `stage`, for every item that the source returns before null, in
+// parallel, and `deliver` in their order, one call at a time. An exception of `work` becomes the
+// failure of its item, as does the death of an earlier worker; one of the source or of `deliver`
+// ends the run and is rethrown.
+void run_file_items(std::string_view stage,
+                    const std::function<std::unique_ptr<FileItem>()>& source,
                     const std::function<void(FileItem&)>& work,
                     const std::function<void(FileItem&)>& deliver, const RunContext& context,
                     const std::atomic<bool>& stop);

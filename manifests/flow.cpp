@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <exception>
 #include <map>
 #include <mutex>
@@ -57,6 +58,17 @@ class Admission {
     return item;
   }
 
+  // `in_work` is the number of items that threads work on; the other items that may start wait for
+  // a thread.
+  void trace(const RunTrace& trace, std::size_t in_work) const {
+    const std::size_t ready = items_in_work_ - std::min(in_work, items_in_work_);
+    trace.count("items", {{"waiting for memory", static_cast<double>(waiting_.size())},
+                          {"waiting for a thread", static_cast<double>(ready)},
+                          {"in work", static_cast<double>(in_work)}});
+    trace.count("bytes in flight", {{"bytes", static_cast<double>(in_work_)}});
+    trace.count_memory();
+  }
+
  private:
   std::uint64_t budget_;
   std::uint64_t in_work_ = 0;
@@ -74,25 +86,35 @@ using Request = std::variant<ItemPointer, Released>;
 // other items to process, and a run that is killed would know nothing of the files that it wrote.
 class Delivery {
  public:
-  explicit Delivery(const Flow& flow) : flow_(flow) {}
+  Delivery(const Flow& flow, const RunTrace* trace) : flow_(flow), trace_(trace) {}
 
   // Returns the number of items delivered.
   int take(const ItemPointer& item) {
+    TraceSpan wait(trace_, "wait to deliver", item->name());
     const std::lock_guard lock(mutex_);
-    if (flow_.completed) flow_.completed(*item);
+    wait.end();
+    if (flow_.completed) {
+      const TraceSpan span(trace_, "records", item->name());
+      flow_.completed(*item);
+    }
     waiting_.emplace(item->index, item);
     int delivered = 0;
     for (auto first = waiting_.begin(); first != waiting_.end() && first->first == next_;
          first = waiting_.erase(first)) {
+      const TraceSpan span(trace_, "deliver", first->second->name());
       flow_.deliver(*first->second);
       ++next_;
       ++delivered;
+    }
+    if (trace_ != nullptr) {
+      trace_->count("items undelivered", {{"items", static_cast<double>(waiting_.size())}});
     }
     return delivered;
   }
 
  private:
   const Flow& flow_;
+  const RunTrace* trace_;
   std::mutex mutex_;
   std::map<std::size_t, ItemPointer> waiting_;  // by index
   std::size_t next_ = 0;
@@ -107,15 +129,16 @@ class Graph {
   Graph(const Flow& flow, const FlowOptions& options, const std::atomic<bool>& stop)
       : flow_(flow),
         stop_(stop),
+        trace_(options.trace),
         admission_(options.memory_bytes),
-        delivery_(flow),
+        delivery_(flow, options.trace),
         source_(graph_, [this](tbb::flow_control& control) { return next_item(control); }),
         window_(graph_, kWindow),
         announce_(graph_, tbbflow::serial, [](const ItemPointer& item) { return Request(item); }),
         admit_(graph_, tbbflow::serial,
                [this](const Request& request, auto& ports) { decide(request, ports); }),
         work_(graph_, tbbflow::unlimited, [this](const ItemPointer& item, auto& ports) {
-          unless_failed([&] { flow_.work(*item); });
+          unless_failed([&] { work_on(*item); });
           std::get<0>(ports).try_put(Released{item->memory_estimate});
           int delivered = 0;
           unless_failed([&] { delivered = delivery_.take(item); });
@@ -159,8 +182,22 @@ class Graph {
     if (!failure_) failure_ = std::current_exception();
   }
 
+  void work_on(FlowItem& item) {
+    if (trace_ == nullptr) return flow_.work(item);
+    const TraceTime start = std::chrono::steady_clock::now();
+    ++in_work_;
+    flow_.work(item);
+    --in_work_;
+    const std::chrono::duration<double> waited = start - item.announced;
+    trace_->span("file", item.name(), start, std::chrono::steady_clock::now(),
+                 {{"place", static_cast<double>(item.index)},
+                  {"waited_seconds", waited.count()},
+                  {"memory_estimate_bytes", static_cast<double>(item.memory_estimate)}});
+  }
+
   ItemPointer next_item(tbb::flow_control& control) {
     ItemPointer item;
+    const TraceSpan span(trace_, "next", "");
     try {
       if (!stop_ && !failed_) item = flow_.next();
     } catch (...) {
@@ -172,13 +209,19 @@ class Graph {
 
   template <typename Ports>
   void decide(const Request& request, Ports& ports) {
-    if (const auto* item = std::get_if<ItemPointer>(&request)) admission_.wait(*item);
+    if (const auto* item = std::get_if<ItemPointer>(&request)) {
+      if (trace_ != nullptr) (*item)->announced = std::chrono::steady_clock::now();
+      admission_.wait(*item);
+    }
     if (const auto* released = std::get_if<Released>(&request)) admission_.release(released->bytes);
     while (const ItemPointer item = admission_.admit()) std::get<0>(ports).try_put(item);
+    if (trace_ != nullptr) admission_.trace(*trace_, in_work_);
   }
 
   const Flow& flow_;
   const std::atomic<bool>& stop_;
+  const RunTrace* trace_;
+  std::atomic<std::size_t> in_work_{0};  // items; counted for the trace alone
   Admission admission_;
   Delivery delivery_;
   std::atomic<bool> failed_{false};

@@ -6,7 +6,10 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <string_view>
 #include <vector>
+
+#include "manifests/run_trace.h"
 
 namespace triglyph {
 
@@ -14,13 +17,19 @@ namespace triglyph {
 struct FlowItem {
   std::size_t index = 0;              // place in the run, from 0
   std::uint64_t memory_estimate = 0;  // most bytes that the item takes while it is processed
+  TraceTime announced = {};           // when it began to wait for memory; only with a trace
 
   virtual ~FlowItem() = default;
+  // Returns what a trace calls the item.
+  [[nodiscard]] virtual std::string_view name() const { return {}; }
 };
 
 struct FlowOptions {
   // Bytes of memory for items in process; an item that needs more is processed alone.
   std::uint64_t memory_bytes = std::uint64_t{4} << 30;
+  // Gets the time of every item on every thread, what it waited for, and how many items and bytes
+  // are on their way; null: nothing is traced.
+  const RunTrace* trace = nullptr;
 };
 
 struct Flow {

@@ -27,6 +27,7 @@ struct MarkItem final : FlowItem {
     index = job.index;
     memory_estimate = memory_of(job.mesh, work_of(job.request));
   }
+  [[nodiscard]] std::string_view name() const override { return job.mesh.native(); }
   Job job;
   Record record;
   bool is_left_out = false;
@@ -44,8 +45,9 @@ class MarkWork {
   void operator()(MarkItem& item) const {
     item.is_left_out = share_.leaves_out(item.index);
     if (item.is_left_out) return;
-    const BoardEntry entry(context_.order, item.index);
+    const BoardEntry entry(context_.order, item.index, item.name());
     FileMarking marking(item.job.mesh, item.job.out, item.job.request, item.job.copies);
+    if (trace() != nullptr) trace_stages(marking);
     try {
       if (stop_ || !decide(item, marking)) mark(item, marking);
       return;
@@ -62,10 +64,30 @@ class MarkWork {
   }
 
  private:
+  [[nodiscard]] const RunTrace* trace() const { return context_.flow.trace; }
+
+  void trace_stages(FileMarking& marking) const {
+    marking.listen([this, &marking](std::string_view stage, TraceTime start, TraceTime end) {
+      const MarkedFile& file = marking.result();
+      if (stage != "mark") return trace()->span(stage, file.mesh.native(), start, end);
+      trace()->span(stage, file.mesh.native(), start, end,
+                    {{"layout_seconds", file.times.layout},
+                     {"assign_seconds", file.times.assign},
+                     {"faces", static_cast<double>(file.faces)}});
+    });
+  }
+
+  // Enters the result into the ledger.
+  void enter(const Record& record) const {
+    const TraceSpan span(trace(), "ledger", record.file.mesh.native());
+    context_.resume->enter(record);
+  }
+
   // Returns whether the job is done already. Otherwise it may have been refused.
   bool decide(MarkItem& item, FileMarking& marking) const {
     const Resume* resume = context_.resume;
     if (resume != nullptr) {
+      const TraceSpan span(trace(), "plan", item.name());
       Decision decision = resume->decide(item.job);
       if (decision.kind == Decision::Kind::Keep) {
         if (!decision.is_of_this_run) resume->keep(item.job);
@@ -103,6 +125,7 @@ class MarkWork {
     // a mesh that was read back is nearly done, so it is finished
     marking.measure();
     if (context_.copies_companions && marking.result().is_marked()) {
+      const TraceSpan span(trace(), "companions", item.name());
       copy_companions(item.job.mesh, item.job.out);
     }
     describe(item, marking);
@@ -110,19 +133,20 @@ class MarkWork {
                                  item.record.file.status != FileStatus::Exists;
     if (context_.resume != nullptr && is_worth_a_line) {
       item.record.line = line_of(item.record);  // once for the ledger, the records and the output
-      context_.resume->enter(item.record);
+      enter(item.record);
     }
     if (!item.record.file.is_marked()) return;
     if (context_.resume != nullptr && context_.keeps_shapes) context_.resume->keep_shape(marking);
     marking.publish(context_.keeps_times);
     if (marking.result().is_marked() || context_.resume == nullptr) return;
     describe(item, marking);
-    context_.resume->enter(item.record);
+    enter(item.record);
   }
 
   // A mark in the same scheme is found by reading; the ledger knows those of every scheme.
   void refuse_what_was_issued(const MarkRequest& request, FileMarking& marking) const {
     if (context_.resume == nullptr || request.options.remark) return;
+    const TraceSpan span(trace(), "look up", marking.result().mesh.native());
     if (const auto reason = context_.resume->issued_before(marking.result().input_hash)) {
       marking.refuse(FileStatus::AlreadyMarked, *reason);
     }

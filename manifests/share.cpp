@@ -7,9 +7,9 @@
 
 namespace triglyph {
 
-BoardEntry::BoardEntry(const WorkOrder* order, std::size_t index)
+BoardEntry::BoardEntry(const WorkOrder* order, std::size_t index, std::string_view name)
     : board_(order == nullptr ? nullptr : order->board), index_(index) {
-  if (board_ != nullptr) board_->begin(index);
+  if (board_ != nullptr) board_->begin(index, name);
 }
 
 BoardEntry::~BoardEntry() {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string_view>
 
 #include "engine/marking/mark_file.h"
 #include "manifests/run_context.h"
@@ -12,7 +13,7 @@ namespace triglyph {
 // Tells the supervisor which item this thread processes, while the object lives.
 class BoardEntry {
  public:
-  BoardEntry(const WorkOrder* order, std::size_t index);
+  BoardEntry(const WorkOrder* order, std::size_t index, std::string_view name);
   ~BoardEntry();
   BoardEntry(const BoardEntry&) = delete;
   BoardEntry& operator=(const BoardEntry&) = delete;

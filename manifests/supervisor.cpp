@@ -30,6 +30,16 @@ std::int64_t now_milliseconds() {
   return std::int64_t{time.tv_sec} * 1000 + time.tv_nsec / 1000000;
 }
 
+// Within this time, in milliseconds, several questions are one: `pkill` asks both processes.
+constexpr std::int64_t kQuestion = 100;
+
+// Hands a worker's question on to the supervisor, which knows the answer.
+void ask_supervisor(int) {
+  const int error = errno;
+  kill(getppid(), SIGUSR1);
+  errno = error;
+}
+
 // The board, in memory that child processes share.
 class SharedBoard {
  public:
@@ -54,6 +64,7 @@ sigset_t supervised_signals() {
   sigset_t signals;
   sigemptyset(&signals);
   sigaddset(&signals, SIGCHLD);
+  sigaddset(&signals, SIGUSR1);
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction action {};
     sigaction(number, nullptr, &action);
@@ -69,10 +80,14 @@ std::string cause_of(int signal) {
 
 }  // namespace
 
-void RunBoard::begin(std::size_t index) {
+void RunBoard::begin(std::size_t index, std::string_view name) {
   for (Slot& slot : slots_) {
     std::uint64_t free = 0;
     if (!slot.item.compare_exchange_strong(free, index + 1)) continue;
+    name.remove_prefix(name.size() - std::min(name.size(), slot.name.size()));
+    for (std::size_t i = 0; i < slot.name.size(); ++i) {
+      slot.name[i].store(i < name.size() ? name[i] : '\0', std::memory_order_relaxed);
+    }
     slot.since = now_milliseconds();
     return;
   }
@@ -87,6 +102,27 @@ void RunBoard::end(std::size_t index) {
   }
 }
 
+std::vector<ItemInWork> RunBoard::items_in_work() const {
+  std::vector<ItemInWork> items;
+  const std::int64_t now = now_milliseconds();
+  for (const Slot& slot : slots_) {
+    const std::uint64_t item = slot.item;
+    const std::int64_t since = slot.since;
+    if (item == 0 || since == 0) continue;
+    std::string name;
+    for (const std::atomic<char>& letter : slot.name) {
+      if (letter == '\0') break;
+      name += letter;
+    }
+    if (slot.item != item) continue;  // another has taken the place meanwhile
+    items.push_back({static_cast<std::size_t>(item - 1), std::move(name),
+                     static_cast<double>(now - since) / 1000});
+  }
+  std::stable_sort(items.begin(), items.end(),
+                   [](const ItemInWork& a, const ItemInWork& b) { return a.seconds > b.seconds; });
+  return items;
+}
+
 const Casualty* WorkOrder::casualty(std::size_t index) const {
   const auto found = std::find_if(casualties.begin(), casualties.end(),
                                   [&](const Casualty& one) { return one.index == index; });
@@ -96,8 +132,12 @@ const Casualty* WorkOrder::casualty(std::size_t index) const {
 // The life of one run.
 class Supervision {
  public:
-  Supervision(const std::function<int(const WorkOrder&)>& work, double timeout)
-      : work_(work), timeout_(static_cast<std::int64_t>(timeout * 1000)) {
+  Supervision(const std::function<int(const WorkOrder&)>& work, double timeout,
+              const SupervisorEvents& events)
+      : work_(work),
+        events_(events),
+        timeout_(static_cast<std::int64_t>(timeout * 1000)),
+        period_(events.tick ? static_cast<std::int64_t>(events.period * 1000) : 0) {
     order_.board = &*board_;
     signals_ = supervised_signals();
     sigprocmask(SIG_BLOCK, &signals_, &former_);
@@ -107,6 +147,18 @@ class Supervision {
   Supervision& operator=(const Supervision&) = delete;
 
   std::optional<int> run() {
+    try {
+      const std::optional<int> code = run_workers();
+      if (events_.ended) events_.ended(*board_, code);
+      return code;
+    } catch (...) {
+      if (events_.ended) events_.ended(*board_, std::nullopt);
+      throw;
+    }
+  }
+
+ private:
+  std::optional<int> run_workers() {
     while (true) {
       const End end = run_worker();
       order_.is_first = false;
@@ -121,7 +173,6 @@ class Supervision {
     }
   }
 
- private:
   // How a worker ended.
   struct End {
     std::optional<int> exit_code;
@@ -138,7 +189,10 @@ class Supervision {
     const pid_t supervisor = getpid();
     const pid_t child = fork();
     if (child == 0) become_worker(supervisor);
-    if (child > 0) return await(child);
+    if (child > 0) {
+      if (events_.started) events_.started(child);
+      return await(child);
+    }
     End end;
     end.exit_code = work_(order_);
     return end;
@@ -149,6 +203,10 @@ class Supervision {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != supervisor) _exit(1);
     for (const int number : {SIGINT, SIGTERM, SIGHUP}) std::signal(number, SIG_IGN);
+    struct sigaction ask {};
+    ask.sa_handler = ask_supervisor;
+    ask.sa_flags = SA_RESTART;
+    sigaction(SIGUSR1, &ask, nullptr);
     sigprocmask(SIG_SETMASK, &former_, nullptr);
     const int code = work_(order_);
     std::cout.flush();
@@ -165,10 +223,12 @@ class Supervision {
           end.exit_code = WEXITSTATUS(status);
         } else {
           end.signal = WTERMSIG(status);
-          end.suspects = items_in_work();
+          end.suspects = suspects();
+          if (events_.died) events_.died(*board_, end.signal);
         }
         return end;
       }
+      look(child);
       if (timeout_ > 0 && end.slow.empty()) {
         end.slow = slow_items();
         if (!end.slow.empty()) kill(child, SIGKILL);
@@ -177,10 +237,9 @@ class Supervision {
         end.was_stopped = true;
         kill(child, SIGKILL);
       }
-      const bool has_deadline = timeout_ > 0 || stopped_at_ > 0;
-      const timespec tick = {.tv_sec = has_deadline ? 0 : 3600,
-                             .tv_nsec = has_deadline ? kTick * 1000000 : 0};
-      const int signal = sigtimedwait(&signals_, nullptr, &tick);
+      const timespec patience = time_until_next_look();
+      const int signal = sigtimedwait(&signals_, nullptr, &patience);
+      if (signal == SIGUSR1) answer(child);
       if (signal == SIGINT || signal == SIGTERM || signal == SIGHUP) {
         // the second signal ends the grace
         stopped_at_ = stopped_at_ > 0 ? 1 : now_milliseconds();
@@ -189,7 +248,29 @@ class Supervision {
     }
   }
 
-  [[nodiscard]] std::vector<std::size_t> items_in_work() const {
+  // Calls what is to be called now and then, if it is time.
+  void look(pid_t child) {
+    if (period_ == 0 || now_milliseconds() < next_tick_) return;
+    events_.tick(*board_, child);
+    next_tick_ = now_milliseconds() + period_;
+  }
+
+  [[nodiscard]] timespec time_until_next_look() const {
+    std::int64_t left = 3600000;
+    if (timeout_ > 0 || stopped_at_ > 0) left = kTick;
+    if (period_ > 0) {
+      left = std::min(left, std::max<std::int64_t>(1, next_tick_ - now_milliseconds()));
+    }
+    return {.tv_sec = static_cast<time_t>(left / 1000), .tv_nsec = left % 1000 * 1000000};
+  }
+
+  void answer(pid_t child) {
+    if (!events_.asked || now_milliseconds() - answered_at_ < kQuestion) return;
+    events_.asked(*board_, child);
+    answered_at_ = now_milliseconds();
+  }
+
+  [[nodiscard]] std::vector<std::size_t> suspects() const {
     std::vector<std::size_t> items;
     for (const RunBoard::Slot& slot : (*board_).slots_) {
       if (slot.item > 0) items.push_back(static_cast<std::size_t>(slot.item - 1));
@@ -250,7 +331,11 @@ class Supervision {
   }
 
   const std::function<int(const WorkOrder&)>& work_;
-  std::int64_t timeout_;  // milliseconds
+  const SupervisorEvents& events_;
+  std::int64_t timeout_;          // milliseconds
+  std::int64_t period_;           // between two ticks, milliseconds; 0: none
+  std::int64_t next_tick_ = 0;    // milliseconds
+  std::int64_t answered_at_ = 0;  // milliseconds
   SharedBoard board_;
   WorkOrder order_;
   sigset_t signals_{};
@@ -258,8 +343,9 @@ class Supervision {
   std::int64_t stopped_at_ = 0;  // milliseconds; 0: not interrupted
 };
 
-std::optional<int> supervise(const std::function<int(const WorkOrder&)>& work, double timeout) {
-  return Supervision(work, timeout).run();
+std::optional<int> supervise(const std::function<int(const WorkOrder&)>& work, double timeout,
+                             const SupervisorEvents& events) {
+  return Supervision(work, timeout, events).run();
 }
 
 }  // namespace triglyph

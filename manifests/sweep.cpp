@@ -419,32 +419,33 @@ SweepEnd sweep(Ledger& ledger, std::int64_t run, std::span<const Key> keys,
                const std::atomic<bool>& stop) {
   SweepSource source(ledger, options, run);
   Sweeper sweeper(ledger, keys, options);
-  run_file_items([&] { return source.next(); },
-                 [&](FileItem& any) {
-                   auto& item = static_cast<SweepItem&>(any);
-                   if (!item.is_of_this_run) sweeper.look_at(item);
-                 },
-                 [&](FileItem& any) {
-                   auto& item = static_cast<SweepItem&>(any);
-                   if (item.is_of_this_run) {
-                     on_file(swept_before(item));
-                     return;
-                   }
-                   if (item.failure) {
-                     item.finding = {FileState::Unreadable, {}, item.failure->error, {}, {}};
-                   }
-                   const SweptFile file = swept_now(item, options.accepts);
-                   ledger.put_state({.target = file.target,
-                                     .state = std::string(name_of(file.state)),
-                                     .change = std::string(file.change()),
-                                     .expected = item.output.output_hash,
-                                     .hash = item.finding.hash,
-                                     .is_accepted = file.is_accepted,
-                                     .line = file.line,
-                                     .run = run});
-                   on_file(file);
-                 },
-                 context, stop);
+  run_file_items(
+      "sweep", [&] { return source.next(); },
+      [&](FileItem& any) {
+        auto& item = static_cast<SweepItem&>(any);
+        if (!item.is_of_this_run) sweeper.look_at(item);
+      },
+      [&](FileItem& any) {
+        auto& item = static_cast<SweepItem&>(any);
+        if (item.is_of_this_run) {
+          on_file(swept_before(item));
+          return;
+        }
+        if (item.failure) {
+          item.finding = {FileState::Unreadable, {}, item.failure->error, {}, {}};
+        }
+        const SweptFile file = swept_now(item, options.accepts);
+        ledger.put_state({.target = file.target,
+                          .state = std::string(name_of(file.state)),
+                          .change = std::string(file.change()),
+                          .expected = item.output.output_hash,
+                          .hash = item.finding.hash,
+                          .is_accepted = file.is_accepted,
+                          .line = file.line,
+                          .run = run});
+        on_file(file);
+      },
+      context, stop);
   return {source.count(), source.is_out_of_time()};
 }
 

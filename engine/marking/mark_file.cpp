@@ -195,7 +195,7 @@ void FileMarking::end(FileStatus status, const std::string& reason) {
 
 // Runs one stage unless an earlier one failed. The only place where exceptions are caught.
 template <typename Stage>
-void FileMarking::run_stage(double& seconds, const Stage& stage) noexcept {
+void FileMarking::run_stage(std::string_view name, double& seconds, const Stage& stage) noexcept {
   if (!result_.is_marked()) return;
   const auto start = std::chrono::steady_clock::now();
   try {
@@ -215,7 +215,9 @@ void FileMarking::run_stage(double& seconds, const Stage& stage) noexcept {
     end(FileStatus::Failed, error.what());
   }
   if (!result_.is_marked()) result_.output_hash.clear();
-  seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const auto end = std::chrono::steady_clock::now();
+  seconds = std::chrono::duration<double>(end - start).count();
+  if (listener_) listener_(name, start, end);
 }
 
 void FileMarking::describe(const Marking& marking) {
@@ -239,7 +241,7 @@ void FileMarking::describe(const Marking& marking) {
 }
 
 void FileMarking::load() noexcept {
-  run_stage(result_.times.load, [&] {
+  run_stage("load", result_.times.load, [&] {
     try {
       work_->mesh =
           work_->copies ? work_->copies->loaded(result_.mesh) : LoadedMesh::open(result_.mesh);
@@ -303,7 +305,7 @@ void FileMarking::write_output() {
 }
 
 void FileMarking::mark(const Key& key) noexcept {
-  run_stage(result_.times.mark, [&] {
+  run_stage("mark", result_.times.mark, [&] {
     MarkOptions& options = result_.request.options;
     result_.key_fingerprint = key.fingerprint();
     MeshFile& file = work_->mesh->file;
@@ -331,11 +333,11 @@ void FileMarking::mark(const Key& key) noexcept {
 }
 
 void FileMarking::write() noexcept {
-  run_stage(result_.times.write, [&] { write_output(); });
+  run_stage("write", result_.times.write, [&] { write_output(); });
 }
 
 void FileMarking::read_back(const Key& key) noexcept {
-  run_stage(result_.times.read_back, [&] {
+  run_stage("read back", result_.times.read_back, [&] {
     if (work_->marking.is_fingerprint) {
       if (reads_fingerprint(key)) result_.status = FileStatus::Traceable;
       return;
@@ -380,7 +382,7 @@ bool FileMarking::reads_fingerprint(const Key& key) {
 }
 
 void FileMarking::measure() noexcept {
-  run_stage(result_.times.measure, [&] {
+  run_stage("measure", result_.times.measure, [&] {
     const Mesh& mesh = work_->mesh->file.mesh();
     const std::vector<Vec3>& marked = work_->marking.positions;
     const Displacement moved = displacement(mesh.positions, marked);
@@ -396,7 +398,7 @@ void FileMarking::measure() noexcept {
 
 void FileMarking::publish(bool keeps_time) noexcept {
   double seconds = 0;
-  run_stage(seconds, [&] {
+  run_stage("publish", seconds, [&] {
     const std::filesystem::path& output = work_->output->temporary_path();
     // a file system without permissions or times is no reason to refuse
     std::error_code ignored;

@@ -2,13 +2,16 @@
 // once its mark was read back from it.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "engine/base/error.h"
@@ -58,6 +61,12 @@ struct StageTimes {
   double load = 0, mark = 0, write = 0, read_back = 0, measure = 0;
   double layout = 0, assign = 0;  // steps 1 and 2, parts of `mark`
 };
+
+// Is told, at the end of each stage that was run, its name and when it began and ended. Must not
+// throw.
+using StageListener =
+    std::function<void(std::string_view stage, std::chrono::steady_clock::time_point start,
+                       std::chrono::steady_clock::time_point end)>;
 
 // The result for one mesh. Everything but the times depends on the inputs alone.
 struct MarkedFile {
@@ -123,6 +132,9 @@ class FileMarking {
   ~FileMarking();
   FileMarking(FileMarking&&) noexcept;
 
+  // Tells the listener of every stage: "load", "mark", "write", "read back", "measure", "publish".
+  void listen(StageListener listener) { listener_ = std::move(listener); }
+
   void load() noexcept;
   void mark(const Key& key) noexcept;
   void write() noexcept;
@@ -151,7 +163,7 @@ class FileMarking {
   struct Work;  // the mesh, its mark and the unfinished output
 
   template <typename Stage>
-  void run_stage(double& seconds, const Stage& stage) noexcept;
+  void run_stage(std::string_view name, double& seconds, const Stage& stage) noexcept;
   void end(FileStatus status, const std::string& reason);
   void describe(const Marking& marking);
   [[nodiscard]] Marking marked_as(const MarkOptions& options, const Key& key) const;
@@ -161,6 +173,7 @@ class FileMarking {
 
   MarkedFile result_;
   std::unique_ptr<Work> work_;
+  StageListener listener_;
 };
 
 // Runs all stages. Does not throw: see MarkedFile::status.

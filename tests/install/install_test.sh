@@ -46,7 +46,7 @@ c++ "$source/examples/mark_and_read.cpp" "${flags[@]}" -Wl,-rpath,"$lib" -o "$wo
 grep -q '^for Ada' <<<"$("$work/by_pkg_config" "$mesh" "$work/marked_again.obj")" || fail "pkg-config"
 
 # Every option in a verb's help is on its page, and the pages are well-formed.
-for verb in mark extract trace verify sweep measure merge render attack survive sample keygen; do
+for verb in mark extract trace verify sweep measure merge render attack survive profile sample keygen; do
   page=$prefix/share/man/man1/triglyph-$verb.1
   sed 's/\\-/-/g; s/\\&//g' "$page" >"$work/page"
   "$prefix/bin/triglyph" "$verb" --help | grep -oE '(^ +|,)--[a-z-]+' | grep -oE -- '--[a-z-]+' >"$work/options"

@@ -124,5 +124,58 @@ TEST(Supervise, KillsAWorkerThatDoesNotHearAnInterrupt) {
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30));
 }
 
+// Whichever of the two processes is asked, the supervisor answers, and knows what is in process.
+TEST(Supervise, AnswersAQuestionToEitherProcess) {
+  for (const bool asks_worker : {false, true}) {
+    std::vector<std::string> in_work;
+    int answers = 0;
+    SupervisorEvents events;
+    events.asked = [&](const RunBoard& board, pid_t) {
+      ++answers;
+      for (const ItemInWork& item : board.items_in_work()) in_work.push_back(item.name);
+    };
+    const auto code = supervise(
+        [&](const WorkOrder& order) {
+          order.board->begin(3, "a.obj");
+          std::this_thread::sleep_for(std::chrono::milliseconds(20));
+          order.board->begin(4, std::string(500, 'x') + "b.obj");
+          kill(asks_worker ? getpid() : getppid(), SIGUSR1);
+          std::this_thread::sleep_for(std::chrono::milliseconds(300));
+          return 6;
+        },
+        0, events);
+    EXPECT_EQ(code, 6);
+    EXPECT_EQ(answers, 1);
+    ASSERT_EQ(in_work.size(), 2U);
+    EXPECT_EQ(in_work[0], "a.obj");  // the one that has taken longest
+    EXPECT_EQ(in_work[1].substr(in_work[1].size() - 6), "xb.obj");
+  }
+}
+
+TEST(Supervise, TellsOfWorkersAndOfTime) {
+  int started = 0;
+  int ticks = 0;
+  std::vector<int> signals;
+  std::optional<int> ended;
+  SupervisorEvents events;
+  events.started = [&](pid_t) { ++started; };
+  events.died = [&](const RunBoard&, int signal) { signals.push_back(signal); };
+  events.tick = [&](const RunBoard&, pid_t) { ++ticks; };
+  events.period = 0.02;
+  events.ended = [&](const RunBoard&, std::optional<int> code) { ended = code; };
+  (void)supervise(
+      [](const WorkOrder& order) {
+        order.board->begin(0);
+        if (order.is_first) std::abort();
+        std::this_thread::sleep_for(std::chrono::milliseconds(200));
+        return 8;
+      },
+      0, events);
+  EXPECT_EQ(started, 2);
+  EXPECT_EQ(signals, std::vector{SIGABRT});
+  EXPECT_GE(ticks, 3);
+  EXPECT_EQ(ended, 8);
+}
+
 }  // namespace
 }  // namespace triglyph
