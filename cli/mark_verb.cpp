@@ -305,9 +305,9 @@ int mark_share(const MarkArguments& arguments, const Jobs& jobs, const Key& key,
   const Shard shard = shard_of(arguments);
   const ShardPlan plan = jobs.plan_of(shard);
   if (order.is_first) {
-    (void)check_plan(*jobs.open(), own_files(arguments));
+    if (!shard.is_whole()) (void)check_plan(*jobs.open(), own_files(arguments));
     MeasuredJobs measured(jobs.open(shard, plan));
-    total = count_jobs(measured);
+    total = shard.is_whole() ? check_plan(measured, own_files(arguments)) : count_jobs(measured);
     order.board->total_bytes = measured.bytes();
   }
   Ledger ledger(ledger_of(arguments));
