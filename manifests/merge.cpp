@@ -109,7 +109,7 @@ class ShardLines {
   std::uint64_t jobs_ = 0;
 };
 
-bool has_output(const LedgerItem& item) {
+bool names_output(const LedgerItem& item) {
   return !item.output_hash.empty();
 }
 
@@ -181,14 +181,15 @@ class LedgerMerge {
     }
     const bool same_work =
         known->input_hash == item.input_hash && known->task == item.task && known->key == item.key;
-    if (same_work && has_output(*known) && has_output(item) &&
+    if (same_work && names_output(*known) && names_output(item) &&
         known->output_hash != item.output_hash) {
       throw Error(ErrorCode::Malformed, from.path(), "",
                   "the ledger: " + item.target + " has other bytes than in " +
                       out_.path().string() + ", though mesh, options and key are the same");
     }
-    const bool replaces =
-        has_output(item) != has_output(*known) ? has_output(item) : item.finished > known->finished;
+    const bool replaces = names_output(item) != names_output(*known)
+                              ? names_output(item)
+                              : item.finished > known->finished;
     if (replaces) out_.put(item, std::nullopt);
   }
 

@@ -16,7 +16,7 @@ namespace {
 // meshoptimizer wants strides of whole words; the fourth number is 0.
 using PackedPoint = std::array<std::uint16_t, 4>;
 
-constexpr double kLargest = 65535;
+constexpr double kLargestPacked = 65535;
 
 struct PackedHeader {
   std::uint32_t points = 0;
@@ -39,7 +39,7 @@ std::vector<char> packed(const Mesh& mesh) {
   PackedHeader header;
   header.points = static_cast<std::uint32_t>(mesh.positions.size());
   header.triangles = static_cast<std::uint32_t>(mesh.triangles.size());
-  if (!mesh.positions.empty()) header.unit = std::max({size[0], size[1], size[2]}) / kLargest;
+  if (!mesh.positions.empty()) header.unit = std::max({size[0], size[1], size[2]}) / kLargestPacked;
   std::vector<PackedPoint> points;
   for (const Vec3& p : mesh.positions) {
     PackedPoint& point = points.emplace_back();
